@@ -6,6 +6,8 @@
 //! data, and of an object that stands another way up. Panels see settings and read-only facts.
 
 mod common;
+mod kept;
+mod layout;
 mod memory;
 mod panels;
 mod shell;
@@ -28,18 +30,21 @@ use std::time::Duration;
 
 use eframe::egui;
 
-use self::common::{light_keys, shortcuts, theme};
-use self::shell::{menu, status, status_file, surroundings};
+use self::common::{light_keys, shortcuts};
+use self::shell::{status_file, surroundings};
 use self::windows::files;
 
 use self::common::commands::Command;
 use self::common::volume_facts::VolumeFacts;
+use self::kept::Strip;
+use self::layout::Layout;
 use self::memory::{Memory, RecentPictures};
 use self::shell::first_lights::{FirstLights, Seeking};
-use self::shell::history::History;
+use self::shell::history::{History, Listed};
 use self::shell::keep_balanced::KeepBalanced;
 use self::shell::messages::Messages;
 use self::shell::object::corrected::Corrected;
+use self::shell::object::framed::Framed;
 use self::shell::object::treat_as::Treated;
 use self::shell::object::upright::Upright;
 use self::shell::opening::{Neighbour, PendingLook};
@@ -53,8 +58,9 @@ use self::viewport::cut_handles::CutHandles;
 use self::viewport::hints::Hints;
 use self::viewport::light_handles::LightHandles;
 use self::viewport::light_probe::LightProbe;
+use self::viewport::orbit::Orbit;
 use self::viewport::overlay::Overlay;
-use self::viewport::{Facts, Viewport, paint_callback};
+use self::viewport::{Viewport, paint_callback};
 use self::windows::chooser::Chooser;
 use self::windows::contact_sheet::ContactSheet;
 use self::windows::export::Export;
@@ -87,6 +93,7 @@ pub struct App {
     treated: Treated,
     upright: Upright,
     corrected: Corrected,
+    framed: Framed,
     viewport: Viewport,
     /// Fills the window's background.
     window: WindowPainter,
@@ -124,10 +131,12 @@ pub struct App {
     session_is_due: bool,
     adjust: Option<Adjustment>,
     history: History,
+    listed: Listed,
     handles: LightHandles,
     cut_handles: CutHandles,
     compare: Compare,
     overlay: Overlay,
+    orbit: Orbit,
     probe: LightProbe,
     palette: Palette,
     light_slice: LightSlice,
@@ -143,7 +152,8 @@ pub struct App {
     neighbour: Option<Neighbour>,
     editor: TransferEditor,
     selected_light: usize,
-    side_open: bool,
+    layout: Layout,
+    strip: Strip,
     help: Help,
     hints: Hints,
     messages: Messages,
@@ -188,6 +198,7 @@ impl App {
         self.is_complete()
             && !self.is_making_look()
             && !self.first_lights.is_due()
+            && self.knows_outline()
             && !self.keep_balanced.is_due(&self.settings)
     }
 
@@ -250,66 +261,6 @@ impl App {
         let Some(volume) = &self.volume else { return String::new() };
         text::menu::title(&volume.name, volume.dims, volume.spacing_mm, volume.has_unknown_scale)
     }
-
-    /// The panels around the picture.
-    fn surroundings(&mut self, ui: &mut egui::Ui, facts: &Facts, commands: &mut Vec<Command>) {
-        let title = self.title();
-        let step = self.step();
-        let history = &self.history;
-        let name_of_step = |is_back: bool| history.name(&step, is_back);
-        let shown = menu::Shown {
-            side: self.side_open,
-            handles: !self.handles.hidden,
-            compares: self.compare.on,
-            overlay: self.overlay.on,
-            probe: self.probe.on,
-        };
-        menu::show(
-            ui,
-            &mut menu::Menu {
-                settings: &mut self.settings,
-                title,
-                step: &name_of_step,
-                shown,
-                several: self.volume.as_ref().map(|volume| &volume.held),
-                recent: self.memory.recent(),
-                recent_pictures: &mut self.recent_pictures,
-                keeps_look: self.keeps_look,
-                earlier: self.memory.earlier(),
-                frame_ms: &mut self.viewport.frame_ms,
-                commands,
-            },
-        );
-        let exporting = self.export.progress_unseen();
-        status::show(ui, facts, self.loader.progress(), exporting, &mut self.messages, commands);
-        if let Some(volume) = &self.volume {
-            let panel = egui::Panel::bottom("transfer").resizable(true).default_size(theme::EDITOR_HEIGHT);
-            let panel = panel.frame(theme::panel(ui));
-            panel.size_range(90.0..=420.0).show(ui, |ui| {
-                self.editor.ui(ui, &mut self.settings, volume, self.probe.value(), commands);
-            });
-        }
-        let panel = egui::Panel::right("side").resizable(true).default_size(theme::SIDE_WIDTH);
-        let panel = panel.size_range(theme::SIDE_WIDTHS).frame(theme::panel(ui));
-        let treated_as = self.treated.kind();
-        panel.show_collapsible(ui, &mut self.side_open, |ui| {
-            panels::show(
-                ui,
-                &mut panels::Panels {
-                    settings: &mut self.settings,
-                    defaults: &self.defaults,
-                    volume: self.volume.as_ref(),
-                    treated_as,
-                    selected_light: &mut self.selected_light,
-                    compare: &mut self.compare,
-                    facts,
-                    balancing: self.balance.is_some(),
-                    commands,
-                },
-            );
-        });
-        self.help.ui(ui.ctx(), facts, self.settings.camera.up);
-    }
 }
 
 impl eframe::App for App {
@@ -340,7 +291,7 @@ impl eframe::App for App {
         let facts = self.viewport.facts(&self.compare.looks(&self.settings));
         self.palette.ui(&ctx, self.settings.camera.up, &mut commands);
         self.chooser.ui(&ctx, self.volume.as_ref(), self.loader.options(), &mut commands);
-        self.surroundings(ui, &facts, &mut commands);
+        self.around(ui, &facts, &mut commands);
         self.picture(ui, &facts, &mut commands);
         shortcuts::from_keys(&ctx, &mut commands);
         light_keys::nudge(&ctx, &mut self.settings, self.selected_light);
@@ -348,9 +299,11 @@ impl eframe::App for App {
         self.ask_for_volume(frame, &ctx);
         self.history.observe(&ctx, &self.step());
         commands.extend(self.take_framed());
+        commands.extend(self.follow_outline(&ctx));
         for command in commands {
             self.execute(command, frame, &ctx);
         }
+        self.leave_picture_only(&ctx);
         self.follow_corrections(&ctx);
         self.finish_first_look(&ctx);
         self.keep_balanced(&ctx);
@@ -380,6 +333,10 @@ impl eframe::App for App {
             // The progress bar moves; and an export of an earlier window does not know this one.
             ctx.request_repaint_after(std::time::Duration::from_millis(100));
         }
+    }
+
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        self.layout.keep(storage);
     }
 
     fn on_exit(&mut self) {

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 
 use super::scene::parse_size;
 use crate::export::PictureFormat;
-use crate::model::{Depth, ImageSpec, MAX_SAMPLES};
+use crate::model::{Depth, ImageSpec, MAX_SAMPLES, Marks};
 
 /// Arguments of a still picture.
 #[derive(Debug, Args)]
@@ -23,6 +23,19 @@ pub(super) struct ImageArgs {
     /// Bits of each colour of a PNG file; EXR files hold linear light in 16-bit floats
     #[arg(long, value_enum, default_value_t = Bits::Eight)]
     bits: Bits,
+    /// Write over the picture how long things are (scale_bar), which side of a body is where (letters), which colour
+    /// stands for which value (legend)
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "MARK")]
+    marks: Vec<Mark>,
+}
+
+/// What is written over a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+enum Mark {
+    ScaleBar,
+    Letters,
+    Legend,
 }
 
 /// Bits of each colour.
@@ -42,6 +55,11 @@ impl ImageArgs {
             Bits::Sixteen => Depth::Sixteen,
         };
         let depth = PictureFormat::of_path(path).depth(wanted);
-        ImageSpec { size: self.size, transparent: self.transparent, samples: self.samples, depth }
+        let marks = Marks {
+            scale_bar: self.marks.contains(&Mark::ScaleBar),
+            letters: self.marks.contains(&Mark::Letters),
+            legend: self.marks.contains(&Mark::Legend),
+        };
+        ImageSpec { size: self.size, transparent: self.transparent, samples: self.samples, depth, marks }
     }
 }

@@ -10,7 +10,7 @@ use super::image_args::ImageArgs;
 use super::outputs::{destination, finish, hand_over, warn_line, warn_of_nothing};
 use super::scene::SceneArgs;
 use crate::data::fingerprint;
-use crate::export::{Destination, check_picture, check_writable, write_atomically, write_picture};
+use crate::export::{Destination, check_picture, check_writable, marks, write_atomically, write_picture};
 use crate::gpu::{RenderOptions, Renderer, dark_share, mean_luminance};
 use crate::model::{PictureRecord, Record, VolumeRecord, tells_maker};
 
@@ -92,12 +92,18 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     let how = PictureRecord::new(shot, context.description());
     let record = Record::text(&settings, Some(&volume), Some(&how));
     let mut bands = renderer.bands(&loaded, &settings, &shot);
+    let (layer, mut first) = (marks(&shot, &settings, loaded.volume()), 0);
     let mut rows = || -> Result<_, CliError> {
         let (done, total) = bands.progress();
         if total > 1 && done < total {
             say(&format!("part {} of {total}", done + 1));
         }
-        Ok(bands.next_rows()?)
+        let mut rows = bands.next_rows()?;
+        if let Some(rows) = &mut rows {
+            layer.lay_over(&shot, first, rows);
+            first += rows.count(&shot);
+        }
+        Ok(rows)
     };
     write_picture(output.path(), &shot, Some(&record), &mut rows)?;
     if renderer.shows_nothing() {

@@ -8,7 +8,7 @@ use super::CliError;
 use super::outputs::{keep_apart, print_line, warn_line};
 use super::scene::{LoadArgs, corrected};
 use crate::data::{Dataset, plain};
-use crate::export::{Rows, check_picture, picture_size, read_picture, read_record, write_picture};
+use crate::export::{Rows, check_picture, marks, picture_size, read_picture, read_record, write_picture};
 use crate::gpu::{Distance, Renderer};
 use crate::model::{PresetError, Record, Settings, VolumePlace, VolumeRecord};
 
@@ -103,7 +103,8 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
         check_picture(output, &shot)?;
     }
     let mut renderer = Renderer::new(&context)?;
-    let again = renderer.bands(&loaded, &settings, &shot).all()?;
+    let mut again = renderer.bands(&loaded, &settings, &shot).all()?;
+    marks(&shot, &settings, loaded.volume()).lay_over(&shot, 0, &mut again);
     let again = again.as_written(&shot);
     if let Some(output) = &args.output {
         let mut rows = Some(again.clone());

@@ -20,6 +20,15 @@ pub enum Rows {
 }
 
 impl Rows {
+    /// How many rows of a picture they are.
+    pub fn count(&self, shot: &ImageSpec) -> usize {
+        let numbers = match self {
+            Self::Bytes(shown) => shown.len(),
+            Self::Floats(shown) => shown.len(),
+        };
+        numbers / (shot.size[0] as usize * 4).max(1)
+    }
+
     /// What a file of them gives back.
     #[must_use]
     pub fn as_written(self, shot: &ImageSpec) -> Self {

@@ -21,6 +21,25 @@ pub enum Depth {
     Linear,
 }
 
+/// What is written over a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Marks {
+    /// How long things are.
+    pub scale_bar: bool,
+    /// Which side of a body is where.
+    pub letters: bool,
+    /// Which colour stands for which value.
+    pub legend: bool,
+}
+
+impl Marks {
+    /// Whether there are none.
+    pub fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
 /// Size and fineness of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ImageSpec {
@@ -34,6 +53,9 @@ pub struct ImageSpec {
     /// What its numbers are.
     #[serde(default)]
     pub depth: Depth,
+    /// What is written over it.
+    #[serde(default, skip_serializing_if = "Marks::is_none")]
+    pub marks: Marks,
 }
 
 fn one() -> u32 {
@@ -43,7 +65,7 @@ fn one() -> u32 {
 impl ImageSpec {
     /// An opaque picture of 8 bits and a sample per pixel.
     pub fn new(size: [u32; 2]) -> Self {
-        Self { size, transparent: false, samples: 1, depth: Depth::Eight }
+        Self { size, transparent: false, samples: 1, depth: Depth::Eight, marks: Marks::default() }
     }
 
     /// The nearest one that can be taken: what a file asks for may be anything.

@@ -15,9 +15,12 @@ mod transfer;
 mod turntable;
 mod variant;
 
-pub use self::settings::camera::{Camera, FRAME_ASPECT, Fit, Projection};
 pub use self::settings::cut::{ClipPlane, CropBox, CutEffect, Cuts, MAX_PLANE_OFFSET, MIN_CROP, Remains};
+pub use self::settings::eye::camera::{Camera, FRAME_ASPECT, Fit, Projection};
+pub use self::settings::eye::scene_axis::SceneAxis;
+pub use self::settings::eye::view::StandardView;
 pub use self::settings::floor::{Floor, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS};
+pub use self::settings::kept::{DIGITS, Kept, KeptLook, KeptThing, MAX_KEPT, MAX_KEPT_BYTES};
 pub use self::settings::labels::{LabelLook, LabelMaterial, LabelTable};
 pub use self::settings::length::Length;
 pub use self::settings::light::area::{
@@ -34,12 +37,10 @@ pub use self::settings::range::DensityRange;
 pub use self::settings::sampling::{
     Classification, Engine, Gradients, Kernel, Quadrature, Sampling, SheetOrder, Slabs, THIN_SLABS,
 };
-pub use self::settings::scene_axis::SceneAxis;
 pub use self::settings::shadows::{
     AreaShadows, Deposit, LightStorage, MAX_BIAS_VOXELS, MAX_LIGHT_SAMPLES, NearField, Precision, Resolution,
     ReverseKernel, ShadowAlgorithm, Shadows,
 };
-pub use self::settings::view::StandardView;
 pub use self::stored::bounds::MAX_LOOK_BYTES;
 pub use self::stored::library::{PRESETS, Preset, apply_relative};
 pub use self::stored::made_by::{MADE_BY, made_by, tells_maker};
@@ -56,7 +57,7 @@ pub use self::transfer::oklab::{
 };
 pub use self::transfer::transmitted::COLORS;
 pub use exchange::{EXPORTED, ExchangeError, IMPORTED, export, import};
-pub use image_spec::{Depth, ImageSpec, MAX_EDGE, MAX_SAMPLES};
+pub use image_spec::{Depth, ImageSpec, MAX_EDGE, MAX_SAMPLES, Marks};
 pub use light_place::LightPlace;
 pub use object_turn::{ObjectTurn, RoomTurn};
 pub use rig::{Rig, key_and_fill};

@@ -79,6 +79,16 @@ impl Variant {
     }
 }
 
+impl Settings {
+    /// A look that was kept, in the place of this one, under the same camera: what is kept stays, and so does what belongs
+    /// to the file.
+    #[must_use]
+    pub fn with_look(&self, look: &Self) -> Self {
+        let under = Variant::Look(Box::new(look.clone())).of(self);
+        Self { kept: self.kept.clone(), ..under }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

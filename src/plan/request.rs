@@ -87,7 +87,7 @@ impl Default for RenderOptions {
 impl RenderOptions {
     /// What a picture is drawn with that is taken like this.
     pub fn of_shot(shot: &ImageSpec) -> Self {
-        let ImageSpec { size: _, transparent, samples, depth } = *shot;
+        let ImageSpec { size: _, transparent, samples, depth, marks: _ } = *shot;
         Self { transparent, samples, depth, ..Self::default() }
     }
 

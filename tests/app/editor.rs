@@ -22,7 +22,7 @@ fn the_transfer_function_is_edited_in_its_plot() {
     assert_eq!(after.points[0], before.points[0]);
 
     // A click on the empty plot adds a point, Delete removes it.
-    let plot = harness.get_by_label("Transfer function").rect();
+    let plot = harness.get_by_label("Transfer function plot").rect();
     let empty = plot.left_top() + vec2(30.0, 30.0);
     drag(&mut harness, empty, Vec2::ZERO);
     harness.run_steps(2);
@@ -38,7 +38,7 @@ fn the_whole_curve_is_colored_moved_and_replaced() {
     let mut harness = window();
     let transfer = |harness: &Harness<'_, App>| harness.state().settings().transfer.clone();
     let first = transfer(&harness);
-    click(&mut harness, "Colours");
+    click(&mut harness, "Transfer function");
     click(&mut harness, "Viridis");
     let colored = transfer(&harness);
     assert!(colored.points.len() > first.points.len());
@@ -57,7 +57,7 @@ fn the_whole_curve_is_colored_moved_and_replaced() {
     assert!(transfer(&harness).points.len() >= preset.points.len() + 8);
 
     // The wheel shows fewer values, and points beyond are not in the way.
-    let plot = harness.get_by_label("Transfer function").rect();
+    let plot = harness.get_by_label("Transfer function plot").rect();
     harness.hover_at(plot.left_center() + vec2(30.0, 0.0));
     harness.step();
     turn_wheel(&harness, 400.0);
@@ -77,7 +77,7 @@ fn points_are_selected_and_changed_together() {
         harness.get_by_label(&format!("Eye point {number}")).rect().center()
     };
     // A frame around the second and the third, from above to below.
-    let plot = harness.get_by_label("Transfer function").rect();
+    let plot = harness.get_by_label("Transfer function plot").rect();
     let (second, third) = (place(&harness, 2), place(&harness, 3));
     let from = Pos2::new(second.x - 6.0, plot.min.y + 3.0);
     drag(&mut harness, from, Pos2::new(third.x + 6.0, plot.max.y - 2.0) - from);
@@ -95,7 +95,7 @@ fn points_are_selected_and_changed_together() {
     // Looking at the colour changes nothing; a step to the right changes that of both.
     let colors = |harness: &Harness<'_, App>| points(harness).iter().map(|p| p.color).collect::<Vec<_>>();
     let plain = colors(&harness);
-    click(&mut harness, "As seen");
+    click(&mut harness, "OKLCH…");
     harness.run_steps(3);
     assert_eq!(colors(&harness), plain);
     harness.get_by_role_and_label(Role::Slider, "Hue").focus();
@@ -109,7 +109,7 @@ fn points_are_selected_and_changed_together() {
     harness.run_steps(3);
 
     // The way to the next point, for both; and one more with Shift.
-    click(&mut harness, "Straight");
+    click(&mut harness, "Linear");
     click(&mut harness, "Smooth");
     let eased = points(&harness).iter().map(|point| point.easing).collect::<Vec<_>>();
     assert_eq!(eased[..4], [Easing::Linear, Easing::Smooth, Easing::Smooth, Easing::Linear]);
@@ -148,7 +148,7 @@ fn points_are_selected_and_changed_together() {
     harness.step();
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::A);
     harness.run_steps(2);
-    click(&mut harness, "Colours");
+    click(&mut harness, "Transfer function");
     click(&mut harness, "Viridis");
     harness.run_steps(3);
     assert!(harness.query_by_label("Level").is_some(), "nothing is selected");

@@ -114,15 +114,15 @@ fn level_and_window_are_dragged_in_the_picture() {
 #[test]
 fn hoods_are_opened_by_their_rim() {
     let mut harness = window();
-    click(&mut harness, "Perspective");
-    click(&mut harness, "Hood");
+    click(&mut harness, "Positional");
+    click(&mut harness, "Spotlight");
     harness.run_steps(3);
     let angle = |harness: &Harness<'_, App>| harness.state().settings().lights[0].hood.half_angle_deg;
     let before = angle(&harness);
     // Where the handle is depends on what the picture shows of the cone.
     let mut changes = Vec::new();
     for by in [vec2(24.0, 0.0), vec2(-24.0, 0.0), vec2(0.0, 24.0), vec2(0.0, -24.0)] {
-        let handle = harness.get_by_label("Hood handle Key").rect().center();
+        let handle = harness.get_by_label("Spotlight handle Key").rect().center();
         drag(&mut harness, handle, by);
         harness.run_steps(2);
         changes.push(angle(&harness) - before);
@@ -216,10 +216,10 @@ fn escape_closes_windows_one_by_one() {
     harness.run_steps(4);
     press(&mut harness, egui::Key::D);
     let is_open = |harness: &Harness<'_, App>, title: &str| harness.query_by_label(title).is_some();
-    assert!(is_open(&harness, "Slices") && is_open(&harness, "Export picture"));
+    assert!(is_open(&harness, "Slices") && is_open(&harness, "Export picture or turntable"));
     press(&mut harness, egui::Key::Escape);
-    assert!(!is_open(&harness, "Slices") && is_open(&harness, "Export picture"));
+    assert!(!is_open(&harness, "Slices") && is_open(&harness, "Export picture or turntable"));
     press(&mut harness, egui::Key::Escape);
-    assert!(!is_open(&harness, "Export picture"));
+    assert!(!is_open(&harness, "Export picture or turntable"));
     wait_until_idle(&mut harness);
 }

@@ -134,7 +134,7 @@ fn new_lights_are_told_apart() {
     }
     // What they add to each other stays within what the first look has.
     assert!(lights[2..].iter().map(|light| light.intensity).sum::<f64>() < 2.0);
-    click(&mut harness, "Perspective");
+    click(&mut harness, "Positional");
     harness.run_steps(4);
     let light = harness.state().settings().lights[7].clone();
     let camera = &harness.state().settings().camera;

@@ -57,14 +57,13 @@ fn open_menu(harness: &mut Harness<'_, App>, name: &str) {
 fn every_widget_has_a_name() {
     let mut harness = unfolded(700.0);
     check(&harness, "the panels");
-    for on in ["Crop box", "Clip plane", "Floor under the volume", "Compare two looks", "Hood"] {
+    for on in ["Crop box", "Clip plane", "Floor under the volume", "Compare two looks", "Spotlight"] {
         if harness.query_by_label(on).is_some() {
             click(&mut harness, on);
             harness.run_steps(4);
         }
     }
-    // The light's; the camera's is further down.
-    harness.get_all_by_label("Perspective").next().expect("the light's kind").click();
+    harness.get_by_label("Positional").click();
     harness.hover_at(egui::pos2(300.0, 400.0));
     harness.run_steps(4);
     check(&harness, "the panels, with everything on");
@@ -74,7 +73,7 @@ fn every_widget_has_a_name() {
         check(&harness, menu);
         press(&mut harness, Modifiers::NONE, Key::Escape);
     }
-    for button in ["Presets", "Colours"] {
+    for button in ["Presets", "Transfer function"] {
         click(&mut harness, button);
         harness.run_steps(4);
         check(&harness, button);

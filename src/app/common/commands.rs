@@ -6,7 +6,9 @@ use super::places::PLACES;
 use super::reveal::Place;
 use crate::data::KindName;
 use crate::data::load::{Aspect, Choice, Thinning};
-use crate::model::{COLOR_MAPS, Light, ObjectTurn, PRESETS, Preset, Rig, SceneAxis, Settings, StandardView};
+use crate::model::{
+    COLOR_MAPS, DIGITS, Light, ObjectTurn, PRESETS, Preset, Rig, SceneAxis, Settings, StandardView,
+};
 
 /// How many voxels are offered to be kept.
 pub(crate) const THINNINGS: [Thinning; 5] =
@@ -61,6 +63,12 @@ pub(crate) enum Command {
     Undo,
     /// One step forward again.
     Redo,
+    /// Show the list of steps, or not.
+    ToggleHistory,
+    /// So many steps forward, or back if they are negative.
+    GoSteps(i32),
+    /// Show all that was said, or not.
+    ToggleMessages,
     /// The camera as it was when the volume was opened.
     ResetView,
     /// All of the volume, from where the eye is.
@@ -73,10 +81,24 @@ pub(crate) enum Command {
     TurnRound,
     /// Perspective or orthographic.
     ToggleProjection,
+    /// Keep the view.
+    KeepView,
+    /// Keep the look.
+    KeepInStrip,
     /// Keep the view under a digit.
     StoreView(u8),
-    /// Look from the view that is kept under a digit.
+    /// Go to what is kept under a digit.
     RecallView(u8),
+    /// Go to something that is kept, by its place; to a look also with its view.
+    GoToKept(usize, bool),
+    /// Keep what is shown in the place of something that is kept.
+    ReplaceKept(usize),
+    /// Compare two looks that are kept, or the picture with one.
+    CompareKept(Option<usize>, usize),
+    /// Write all that is kept into one picture.
+    ExportKept,
+    /// Show or hide the strip of what is kept.
+    ToggleKept,
     /// The window fills the screen, or not.
     ToggleFullScreen,
     /// Show or hide the chips of the lights, box, scale bar and cube.
@@ -141,6 +163,10 @@ pub(crate) enum Command {
     Balance,
     /// Show or hide the side panel.
     ToggleSide,
+    /// Show or hide the transfer function editor.
+    ToggleTransfer,
+    /// Show the picture alone, or the panels again.
+    TogglePictureOnly,
     /// Show or hide the handles of the lights.
     ToggleHandles,
     /// Show two looks in one picture, or one again.
@@ -159,9 +185,6 @@ pub(crate) enum Command {
     ShowAbout,
 }
 
-/// Digits under which views are kept.
-pub(crate) const VIEW_SLOTS: std::ops::RangeInclusive<u8> = 1..=9;
-
 /// Every command that can be asked for by its name.
 pub(crate) fn listed() -> Vec<Command> {
     let mut all = vec![
@@ -178,6 +201,8 @@ pub(crate) fn listed() -> Vec<Command> {
         Command::KeepLook,
         Command::Undo,
         Command::Redo,
+        Command::ToggleHistory,
+        Command::ToggleMessages,
         Command::ResetView,
         Command::FrameAll,
         Command::TurnObject(ObjectTurn::Over),
@@ -208,6 +233,12 @@ pub(crate) fn listed() -> Vec<Command> {
         Command::ImportTransfer,
         Command::ExportTransfer,
         Command::ToggleSide,
+        Command::ToggleTransfer,
+        Command::TogglePictureOnly,
+        Command::ToggleKept,
+        Command::KeepView,
+        Command::KeepInStrip,
+        Command::ExportKept,
         Command::ToggleHandles,
         Command::ToggleCompare,
         Command::CompareWithFile,
@@ -229,7 +260,7 @@ pub(crate) fn listed() -> Vec<Command> {
     all.extend(PRESETS.map(Command::UsePreset));
     all.extend(PLACES.iter().map(|(place, _)| Command::Reveal(*place)));
     all.extend((0..COLOR_MAPS.len()).flat_map(|at| [false, true].map(|back| Command::UseColors(at, back))));
-    all.extend(VIEW_SLOTS.map(Command::StoreView));
-    all.extend(VIEW_SLOTS.map(Command::RecallView));
+    all.extend(DIGITS.map(Command::StoreView));
+    all.extend(DIGITS.map(Command::RecallView));
     all
 }

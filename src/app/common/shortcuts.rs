@@ -15,7 +15,7 @@ const fn control(key: Key, command: Command) -> (KeyboardShortcut, Command) {
 }
 
 /// A command with its key, as help shows it.
-pub(crate) const SHORTCUTS: [(KeyboardShortcut, Command); 45] = [
+pub(crate) const SHORTCUTS: [(KeyboardShortcut, Command); 48] = [
     // The longer one first: egui lets Shift pass where it is not asked for.
     (KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::O), Command::OpenFolder),
     control(Key::O, Command::OpenDialog),
@@ -58,8 +58,11 @@ pub(crate) const SHORTCUTS: [(KeyboardShortcut, Command); 45] = [
     plain(Key::H, Command::ToggleHandles),
     plain(Key::C, Command::ToggleCompare),
     plain(Key::D, Command::ShowSlices),
+    (KeyboardShortcut::new(Modifiers::SHIFT, Key::V), Command::ToggleKept),
     plain(Key::V, Command::TryLooks),
+    (KeyboardShortcut::new(Modifiers::SHIFT, Key::N), Command::ToggleTransfer),
     plain(Key::N, Command::ToggleSide),
+    control(Key::Backslash, Command::TogglePictureOnly),
     plain(Key::Questionmark, Command::ShowHelp),
     plain(Key::F1, Command::ShowHelp),
 ];
@@ -83,12 +86,13 @@ impl Command {
 /// A key as it is printed on the keyboard.
 pub(crate) fn key_text(ctx: &egui::Context, shortcut: KeyboardShortcut) -> String {
     let named = ctx.format_shortcut(&shortcut);
-    let signs = [
+    let signs: [_; 6] = [
         (Key::OpenBracket, "["),
         (Key::CloseBracket, "]"),
         (Key::Comma, ","),
         (Key::Period, "."),
         (Key::Questionmark, "?"),
+        (Key::Backslash, "\\"),
     ];
     signs.into_iter().fold(named, |text, (key, sign)| text.replace(key.name(), sign))
 }

@@ -47,6 +47,8 @@ pub(crate) const AXES: [Color32; 3] = [
 pub(crate) const OUTLINE: Color32 = Color32::from_rgb(0x0c, 0x0d, 0x10);
 /// Lines that help while a light is moved.
 pub(crate) const GUIDE: Color32 = Color32::from_rgb(0xc9, 0xd2, 0xe0);
+/// Where a light is lost on its way.
+pub(crate) const BLOCKED: Color32 = Color32::from_rgb(0xf0, 0x5a, 0x4a);
 /// Behind the picture while there is none.
 pub(crate) const EMPTY_CANVAS: Color32 = Color32::from_rgb(0x1b, 0x1e, 0x24);
 

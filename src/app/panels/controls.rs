@@ -121,13 +121,17 @@ pub(super) fn choice<T: PartialEq + Copy>(
             ui.spacing_mut().button_padding.x *= 0.7;
         }
         let mut changed = false;
-        for (option, of_option) in options {
-            let response = ui.selectable_label(value == option, of_option.name).on_hover_text(of_option.tip);
-            if response.clicked() && value != option {
-                *value = *option;
-                changed = true;
+        // Long words take another row.
+        ui.horizontal_wrapped(|ui| {
+            for (option, of_option) in options {
+                let response =
+                    ui.selectable_label(value == option, of_option.name).on_hover_text(of_option.tip);
+                if response.clicked() && value != option {
+                    *value = *option;
+                    changed = true;
+                }
             }
-        }
+        });
         changed
     })
 }

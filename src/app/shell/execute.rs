@@ -1,17 +1,17 @@
 //! Carries out commands and takes in what threads have finished.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use eframe::egui;
 
 use crate::app::common::commands::Command;
 use crate::app::common::{light_keys, reveal};
 use crate::app::text;
+use crate::app::viewport::orbit::Orbit;
 use crate::app::windows::contact_sheet::Sheet;
+use crate::app::windows::export;
 use crate::app::windows::export::Exported;
 use crate::app::windows::files::{self, Purpose};
-use crate::app::windows::{export, light_slice, recovery, roomy};
 use crate::app::worker::loader::Outcome;
 use crate::app::worker::task::Work;
 use crate::app::{App, panels};
@@ -50,6 +50,9 @@ impl App {
             Command::KeepLook => self.keeps_look ^= true,
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             Command::Undo | Command::Redo => self.go(command == Command::Undo, ctx),
+            Command::ToggleHistory => self.listed.open ^= true,
+            Command::GoSteps(steps) => self.go_steps(steps, ctx),
+            Command::ToggleMessages => self.messages.lists ^= true,
             Command::ResetView => {
                 if self.first_look_stands(Some(command), ctx) {
                     self.settings.camera = self.defaults.camera.clone();
@@ -98,19 +101,38 @@ impl App {
             }
             Command::Balance => self.start_balance(ctx),
             Command::FrameAll => {
-                if self.first_look_stands(Some(command), ctx) {
-                    self.settings.camera.frame_as(&self.defaults.camera);
+                if self.can_frame(command, ctx) {
+                    self.frame_object();
                 }
             }
             Command::TurnObject(turn) => self.turn_object(turn, ctx),
-            Command::TurnRound => self.settings.camera.orbit(90.0, 0.0),
-            Command::LookFrom(view) => self.settings.camera.look_from(view),
-            Command::ToggleProjection => self.settings.camera.toggle_projection(),
-            Command::StoreView(slot) => {
-                self.settings.views.insert(slot, self.settings.camera.clone());
-                self.messages.note(text::messages::view_kept(slot));
+            Command::TurnRound => {
+                if self.can_frame(command, ctx) {
+                    let outline = self.outline();
+                    let orbit = Orbit::begin(&self.settings.camera, outline.as_deref());
+                    self.settings.camera.orbit(90.0, 0.0);
+                    orbit.keep_in_frame(&mut self.settings.camera, outline.as_deref());
+                }
             }
-            Command::RecallView(slot) => self.recall_view(slot, ctx),
+            Command::LookFrom(view) => {
+                if self.can_frame(command, ctx) {
+                    self.settings.camera.look_from(view);
+                    self.frame_object();
+                }
+            }
+            Command::ToggleProjection => self.settings.camera.toggle_projection(),
+            Command::KeepView => self.keep_view(),
+            Command::KeepInStrip => self.keep_look_in_strip(),
+            Command::StoreView(slot) => self.keep_view_under(slot),
+            Command::RecallView(slot) => self.go_to_digit(slot, ctx),
+            Command::GoToKept(at, with_view) => self.go_to_kept(at, with_view, ctx),
+            Command::ReplaceKept(at) => self.replace_kept(at),
+            Command::CompareKept(left, right) => {
+                self.compare_kept(left, right);
+                reveal::show_section(ctx, text::sections::COMPARE, true);
+            }
+            Command::ExportKept => self.files.ask(Purpose::ExportKept, frame, ctx),
+            Command::ToggleKept => self.layout.kept ^= true,
             Command::ToggleFullScreen => {
                 let is_full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
                 ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!is_full));
@@ -127,11 +149,11 @@ impl App {
                 self.settings.lights = lights;
             }
             Command::UseLook(look) => {
-                // Views that were kept are no part of it, nor is how truly it is drawn, nor what is cut away, nor what is
+                // What is kept is no part of it, nor is how truly it is drawn, nor what is cut away, nor what is
                 // known of the file.
                 let look = look.drawn_as(&self.settings);
-                let Settings { cuts, views, volume, .. } = std::mem::take(&mut self.settings);
-                self.settings = Settings { cuts, views, volume, ..look };
+                let Settings { cuts, kept, volume, .. } = std::mem::take(&mut self.settings);
+                self.settings = Settings { cuts, kept, volume, ..look };
                 self.selected_light = 0;
             }
             Command::TryLooks => {
@@ -159,14 +181,17 @@ impl App {
                     }
                 }
             }
-            Command::ToggleSide => self.side_open ^= true,
+            Command::ToggleSide => self.layout.side ^= true,
+            Command::ToggleTransfer => self.layout.transfer ^= true,
+            Command::TogglePictureOnly => self.toggle_picture_only(),
             Command::ToggleHandles => self.handles.hidden ^= true,
             Command::ToggleCompare => {
                 self.compare.on ^= true;
                 reveal::show_section(ctx, text::sections::COMPARE, self.compare.on);
             }
             Command::Reveal(place) => {
-                self.side_open = true;
+                self.layout.side = true;
+                self.layout.picture_only = false;
                 reveal::reveal(ctx, place);
             }
             Command::ShowSlices => self.slices.open ^= true,
@@ -237,82 +262,25 @@ impl App {
         }
     }
 
-    /// The windows over the picture.
-    pub(crate) fn windows(
-        &mut self,
-        frame: &eframe::Frame,
-        ctx: &egui::Context,
-        commands: &mut Vec<Command>,
-    ) {
-        match self.recovery.ui(ctx) {
-            None => {}
-            Some(answer) => {
-                self.memory.settle();
-                if let recovery::Answer::GoOn(look) = answer {
-                    self.open_record(&look, ctx);
-                }
-            }
-        }
-        self.quit.ui(ctx, self.export.is_busy());
-        if let Some(answer) = self.lost_again.ui(ctx, self.viewport.context().is_software()) {
-            self.answer_loss(answer, ctx);
-        }
-        if self.contact_sheet.is_due() {
-            let subject = self.subject();
-            if let Err(err) = self.contact_sheet.start(subject, ctx) {
-                self.messages.error(text::messages::LOOKS_NOT_TRIED, err);
-            }
-        }
-        if let Err(err) = self.contact_sheet.ui(ctx, commands) {
-            self.messages.error(text::messages::LOOKS_NOT_TRIED, err);
-        }
-        if let Some(described) = self.raw_dialog.ui(ctx) {
-            self.open_described(&described, ctx);
-        }
-        match self.roomy.ui(ctx) {
-            None => {}
-            Some(roomy::Answer::Cancel) => self.pending = None,
-            Some(roomy::Answer::Read { source, reading }) => {
-                self.start_loading(&source, *reading, ctx);
-            }
-        }
-        if let Some((purpose, path)) = self.files.ui(ctx) {
-            self.chosen(purpose, &path, ctx);
-        }
-        let volume = self.viewport.dataset().map(|dataset| Arc::clone(dataset.volume()));
-        let drawn = volume.as_ref().filter(|_| self.slices.open).map(|volume| self.settings.as_drawn(volume));
-        let transfer = drawn.as_ref().map_or(&self.settings.transfer, |drawn| &drawn.transfer);
-        self.slices.ui(ctx, volume.as_ref(), self.volume.as_ref(), transfer);
-        let scene = light_slice::Scene {
-            settings: &self.settings,
-            dataset: self.viewport.dataset(),
-            context: self.viewport.context(),
-            at_rest: self.is_complete(),
-        };
-        match self.light_slice.ui(ctx, &scene) {
-            Ok(false) => {}
-            Ok(true) => self.files.ask(Purpose::ExportLight, frame, ctx),
-            Err(err) => self.messages.error(text::messages::LIGHT_VOLUME_NOT_SHOWN, err),
-        }
-        match self.export.ui(ctx, self.viewport_size()) {
-            None => {}
-            Some(export::Request::Choose) => self.files.ask(Purpose::ExportPicture, frame, ctx),
-            Some(export::Request::Export) => self.start_export(ctx),
-        }
-    }
-
-    fn viewport_size(&self) -> [u32; 2] {
+    pub(in crate::app) fn viewport_size(&self) -> [u32; 2] {
         // Before there is a picture, as many pixels as the smallest usual screens have.
         self.canvas.map_or([1280, 720], |canvas| canvas.size.map(|n| n.max(1)))
     }
 
     /// A file was chosen or typed.
-    fn chosen(&mut self, purpose: Purpose, path: &Path, ctx: &egui::Context) {
+    pub(in crate::app) fn chosen(&mut self, purpose: Purpose, path: &Path, ctx: &egui::Context) {
         match purpose {
             Purpose::OpenVolume | Purpose::OpenFolder => self.open(path, ctx),
             Purpose::VolumeOfLook => self.open_for_look(path, ctx),
             Purpose::ExportPicture => self.export.set_path(path),
             Purpose::SaveSettings => self.save_settings(path),
+            Purpose::ExportKept => {
+                if let Some(subject) = self.subject()
+                    && let Err(err) = self.export.sheet(subject, path, ctx)
+                {
+                    self.messages.error(text::messages::PICTURE_NOT_EXPORTED, err);
+                }
+            }
             Purpose::ExportLight => {
                 let Some(dataset) = self.viewport.dataset() else { return };
                 match self.light_slice.export(path, dataset.volume()) {
@@ -348,7 +316,7 @@ impl App {
     }
 
     /// What is to be exported; a message if there is nothing.
-    fn subject(&mut self) -> Option<export::Subject> {
+    pub(in crate::app) fn subject(&mut self) -> Option<export::Subject> {
         let Some(dataset) = self.viewport.dataset() else {
             self.messages.note(text::messages::NO_PICTURE);
             return None;

@@ -3,7 +3,7 @@
 use eframe::egui::{self, Button, ThemePreference};
 
 use crate::app::common::aspect::Alternatives;
-use crate::app::common::commands::{Command, VIEW_SLOTS};
+use crate::app::common::commands::Command;
 use crate::app::common::theme;
 use crate::app::memory::{EarlierRun, RecentFile, RecentPictures};
 use crate::app::text;
@@ -49,6 +49,10 @@ pub(crate) struct Menu<'a> {
 pub(crate) struct Shown {
     /// The side panel.
     pub side: bool,
+    /// The transfer function editor.
+    pub transfer: bool,
+    /// The strip of kept views and looks.
+    pub kept: bool,
     /// The handles of the lights.
     pub handles: bool,
     /// Two looks instead of one.
@@ -67,6 +71,7 @@ pub(crate) fn show(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
             ui.menu_button(text::menu::EDIT, |ui| {
                 step(ui, menu, Command::Undo, true);
                 step(ui, menu, Command::Redo, false);
+                item(ui, menu, Command::ToggleHistory, true);
                 ui.separator();
                 item(ui, menu, Command::ShowPalette, true);
             });
@@ -74,6 +79,7 @@ pub(crate) fn show(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
             ui.menu_button(text::menu::LIGHT, |ui| light(ui, menu));
             ui.menu_button(text::menu::HELP, |ui| {
                 item(ui, menu, Command::ShowHelp, true);
+                item(ui, menu, Command::ToggleMessages, true);
                 item(ui, menu, Command::ShowAbout, true);
             });
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -193,13 +199,19 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
             }
         }
     });
-    ui.menu_button(text::menu::KEPT_VIEWS, |ui| {
-        for slot in VIEW_SLOTS {
-            let kept = menu.settings.views.contains_key(&slot);
-            ui.horizontal(|ui| {
-                item(ui, menu, Command::RecallView(slot), kept);
-                item(ui, menu, Command::StoreView(slot), true);
-            });
+    ui.menu_button(text::menu::KEPT, |ui| {
+        item(ui, menu, Command::KeepView, true);
+        item(ui, menu, Command::KeepInStrip, true);
+        item(ui, menu, Command::ExportKept, !menu.settings.kept.is_empty());
+        if !menu.settings.kept.is_empty() {
+            ui.separator();
+        }
+        for (at, kept) in menu.settings.kept.iter().enumerate() {
+            let key = kept.digit.map(text::kept::key).unwrap_or_default();
+            let name = text::kept::go_to(&kept.name, kept.as_look().is_some());
+            if ui.add(Button::new(name).shortcut_text(key)).clicked() {
+                menu.commands.push(Command::GoToKept(at, false));
+            }
         }
     });
     item(ui, menu, Command::ToggleFullScreen, true);
@@ -217,6 +229,9 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
         (Command::TogglePlane, cuts.plane.on),
         (Command::ToggleFloor, menu.settings.floor.on),
         (Command::ToggleSide, menu.shown.side),
+        (Command::ToggleTransfer, menu.shown.transfer),
+        (Command::ToggleKept, menu.shown.kept),
+        (Command::TogglePictureOnly, false),
         (Command::ToggleHandles, menu.shown.handles),
         (Command::ToggleOverlay, menu.shown.overlay),
         (Command::ToggleProbe, menu.shown.probe),

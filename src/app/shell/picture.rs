@@ -12,13 +12,15 @@ use crate::app::viewport::compare::Compare;
 use crate::app::viewport::cut_handles::CutHandles;
 use crate::app::viewport::hints::Hints;
 use crate::app::viewport::light_handles::LightHandles;
-use crate::app::viewport::light_probe::LightProbe;
+use crate::app::viewport::light_probe::{LightProbe, Pointing};
+use crate::app::viewport::orbit::Orbit;
 use crate::app::viewport::overlay::Overlay;
 use crate::app::viewport::view_projection::ViewProjection;
 use crate::app::viewport::{Facts, Viewport, light_chips, light_probe, nothing_seen, orbit};
 use crate::app::windows::slices::Slices;
 use crate::gpu::GpuError;
 use crate::model::Settings;
+use crate::model::auto::Outline;
 
 /// What the picture is shown with.
 pub(crate) struct PictureInputs<'a> {
@@ -40,6 +42,10 @@ pub(crate) struct PictureInputs<'a> {
     pub overlay: Overlay,
     /// What is under the pointer.
     pub probe: &'a mut LightProbe,
+    /// How the eye goes round.
+    pub orbit: &'a mut Orbit,
+    /// Where the object ends, if that is known.
+    pub outline: Option<&'a Outline>,
     /// Cuts through the data, and their cursor.
     pub slices: &'a mut Slices,
     /// What the first picture says.
@@ -64,6 +70,8 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
         compare,
         overlay,
         probe,
+        orbit,
+        outline,
         slices,
         hints,
         volume,
@@ -86,6 +94,8 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
         !(handles.takes_wheel || cut_handles.takes_wheel),
         // Labels have no window of values.
         viewport.dataset().map(|dataset| dataset.volume().shown_range()).filter(|_| is_by_value),
+        orbit,
+        outline,
     );
     if response.double_clicked()
         && let (Some(at), Some(dataset)) = (response.interact_pointer_pos(), viewport.dataset())
@@ -119,7 +129,8 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
     }
     if let Some(dataset) = viewport.dataset().filter(|_| probe.on) {
         let pointer = response.hover_pos().filter(|_| !response.dragged());
-        probe.show(ui, canvas.rect, settings, dataset.volume(), pointer);
+        let pointing = Pointing { pointer, clicked: response.clicked() };
+        probe.show(ui, canvas.rect, settings, dataset.volume(), pointing);
     }
     if let Some(dataset) = viewport.dataset() {
         nothing_seen::show(ui, canvas.rect, settings, defaults, dataset.volume(), facts);
@@ -145,6 +156,7 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
 impl App {
     /// The picture.
     pub(in crate::app) fn picture(&mut self, ui: &mut egui::Ui, facts: &Facts, commands: &mut Vec<Command>) {
+        let outline = self.outline();
         let inputs = PictureInputs {
             settings: &mut self.settings,
             defaults: &self.defaults,
@@ -155,6 +167,8 @@ impl App {
             compare: &mut self.compare,
             overlay: self.overlay,
             probe: &mut self.probe,
+            orbit: &mut self.orbit,
+            outline: outline.as_deref(),
             slices: &mut self.slices,
             hints: &mut self.hints,
             volume: self.volume.as_ref(),
@@ -164,6 +178,8 @@ impl App {
         let shown = egui::CentralPanel::no_frame().show(ui, |ui| show(ui, inputs));
         let (canvas, result) = shown.inner;
         self.canvas = Some(canvas);
+        self.messages.notice(ui.ctx(), canvas.rect);
+        self.messages.list(ui.ctx());
         if let Err(err) = result {
             self.rendering_failed(&err, ui.ctx());
         }

@@ -45,9 +45,12 @@ pub(crate) fn show(
                 export(ui, done, total, commands);
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                // What is said is more urgent than figures, which make room.
-                if messages.ui(ui) {
-                    return;
+                // All that was said, for who was not quick enough.
+                if messages.count() > 0 {
+                    let button = ui.small_button(text::messages::count(messages.count()));
+                    if button.on_hover_text(text::messages::LIST_TIP).clicked() {
+                        messages.lists ^= true;
+                    }
                 }
                 let figures = figures(facts);
                 let tip = format!("{figures}\n{}", facts.driver);

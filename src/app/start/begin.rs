@@ -6,12 +6,15 @@ use super::carried::Legacy;
 use super::error::AppError;
 use super::options::Options;
 use crate::app::common::theme;
+use crate::app::kept::Strip;
+use crate::app::layout::Layout;
 use crate::app::memory::Memory;
 use crate::app::shell::first_lights::FirstLights;
-use crate::app::shell::history::History;
+use crate::app::shell::history::{History, Listed};
 use crate::app::shell::keep_balanced::KeepBalanced;
 use crate::app::shell::messages::Messages;
 use crate::app::shell::object::corrected::Corrected;
+use crate::app::shell::object::framed::Framed;
 use crate::app::shell::object::treat_as::Treated;
 use crate::app::shell::object::upright::Upright;
 use crate::app::shell::session::Session;
@@ -23,6 +26,7 @@ use crate::app::viewport::cut_handles::CutHandles;
 use crate::app::viewport::hints::Hints;
 use crate::app::viewport::light_handles::LightHandles;
 use crate::app::viewport::light_probe::LightProbe;
+use crate::app::viewport::orbit::Orbit;
 use crate::app::viewport::overlay::Overlay;
 use crate::app::windows::chooser::Chooser;
 use crate::app::windows::contact_sheet::ContactSheet;
@@ -114,6 +118,8 @@ impl App {
         let window_context = Context::new(&paint.adapter, paint.device, paint.queue)?;
         let context = window_context.sibling()?;
         theme::apply(&cc.egui_ctx);
+        let layout = Layout::kept(cc.storage);
+        layout.apply(&cc.egui_ctx);
         Ok(Self {
             settings: Settings::default(),
             defaults: Settings::default(),
@@ -121,6 +127,7 @@ impl App {
             treated: Treated::default(),
             upright: Upright::default(),
             corrected: Corrected::default(),
+            framed: Framed::default(),
             viewport: Viewport::new(context.clone(), window.clone(), &cc.egui_ctx)?,
             canvas: None,
             loader: Loader::new(context, load, storage.as_deref())?,
@@ -142,10 +149,12 @@ impl App {
             lost_again: LostAgain::default(),
             adjust: None,
             history: History::default(),
+            listed: Listed::default(),
             handles: LightHandles::default(),
             cut_handles: CutHandles::default(),
             compare: Compare::default(),
             overlay: Overlay::default(),
+            orbit: Orbit::default(),
             probe: LightProbe::default(),
             palette: Palette::default(),
             light_slice: LightSlice::default(),
@@ -166,7 +175,8 @@ impl App {
             is_ending: false,
             wants_cpu: false,
             selected_light: 0,
-            side_open: true,
+            layout,
+            strip: Strip::default(),
             help: Help::default(),
             hints: Hints::default(),
             messages: Messages::default(),

@@ -5,6 +5,8 @@
 //! presets, colour maps, views and sets of lights are with them in `src/model`; errors word themselves.
 
 pub(super) mod common;
+pub(super) mod history;
+pub(super) mod kept;
 mod panels;
 mod shell;
 pub(super) mod transfer;
@@ -17,7 +19,7 @@ pub(super) use self::panels::{
     shadows, sky,
 };
 pub(super) use self::shell::{changes, commands, memory, menu, messages, opening, status};
-pub(super) use self::viewport::{compared, cut_handles, overlay, picture, probe};
+pub(super) use self::viewport::{compared, cut_handles, picture, probe};
 pub(super) use self::windows::{
     chooser, contact_sheet, export, files, foreign_path, help, light_volume, raw, roomy, slices,
 };

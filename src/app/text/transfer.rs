@@ -3,7 +3,7 @@
 use super::{Named, named};
 
 /// What screen readers call the plot.
-pub(crate) const PLOT: &str = "Transfer function";
+pub(crate) const PLOT: &str = "Transfer function plot";
 
 pub(crate) const EYE: Named = named("Eye", "Edit what the eye sees");
 pub(crate) const LIGHT: Named = named("Light", "Edit what light meets");
@@ -26,14 +26,14 @@ pub(crate) const OPACITY_ONE: &str = "opacity 1";
 pub(crate) const PRESETS: &str = "Presets";
 pub(crate) const TRY_PRESETS_TIP: &str = "Shows each on your volume";
 
-pub(crate) const COLORS: &str = "Colours";
+pub(crate) const COLORS: &str = "Transfer function";
 pub(crate) const COLOR_MAP_TIP: &str = "Colours the visible values";
 pub(crate) const REVERSED: &str = "reversed";
 /// Of reading a transfer function from a file and writing it.
 pub(crate) const FILES_TIP: &str =
     "ParaView, Slicer, Inviwo, MRIcroGL and ImageJ; Voreen and AGAVE can be read";
 pub(crate) const MIX_AS_SEEN: Named = named(
-    "Mix as seen",
+    "Perceptual blending",
     "Mixes colours between points in Oklab: lightness is even, and blue to yellow has no glare",
 );
 pub(crate) const INVERT: Named = named("Invert opacities", "What is dense becomes clear");
@@ -54,13 +54,13 @@ pub(crate) const POINT_COLOR: &str = "Colour of the point";
 pub(crate) const REMOVE: &str = "Remove";
 
 pub(crate) const AS_SEEN: Named =
-    named("As seen", "Lightness, chroma and hue: equal steps look equally large");
+    named("OKLCH…", "Lightness, chroma and hue: equal steps look equally large");
 pub(crate) const LIGHTNESS: &str = "Lightness";
 pub(crate) const CHROMA: &str = "Chroma";
 pub(crate) const HUE: &str = "Hue";
 
-pub(crate) const WAY_TIP: &str = "The way to the next point";
-pub(crate) const STRAIGHT: &str = "Straight";
+pub(crate) const WAY_TIP: &str = "Interpolation to the next point";
+pub(crate) const STRAIGHT: &str = "Linear";
 pub(crate) const SMOOTH: &str = "Smooth";
 pub(crate) const STEP: &str = "Step";
 

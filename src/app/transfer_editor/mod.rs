@@ -78,8 +78,8 @@ impl TransferEditor {
 const NUDGE: [f64; 2] = [1.0 / 256.0, 0.01];
 
 /// Points of width in which all tools have room side by side: those of the curve take 590 at most, the others
-/// 410.
-const WIDE: f32 = 1000.0;
+/// 510.
+const WIDE: f32 = 1100.0;
 
 impl TransferEditor {
     /// Shows the editor in the whole of `ui`.

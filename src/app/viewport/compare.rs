@@ -48,8 +48,8 @@ impl Compare {
 
     /// What is to be rendered: the look, or the left and the right one.
     pub(crate) fn looks(&self, settings: &Settings) -> Looks {
-        // Saved views are no part of a picture.
-        let settings = Settings { views: std::collections::BTreeMap::new(), ..settings.clone() };
+        // What is kept is no part of a picture.
+        let settings = Settings { kept: Vec::new(), ..settings.clone() };
         if self.on {
             Looks { left: self.left.of(&settings), right: Some(self.right.of(&settings)) }
         } else {

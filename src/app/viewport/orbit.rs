@@ -5,7 +5,8 @@ use glam::dvec2;
 
 use crate::app::common::light_keys;
 use crate::data::ValueRange;
-use crate::model::Settings;
+use crate::model::auto::Outline;
+use crate::model::{Camera, Settings};
 
 /// Degrees of orbit per point of drag.
 const DEGREES_PER_POINT: f64 = 0.4;
@@ -17,10 +18,35 @@ const POINTS_PER_NOTCH: f64 = 40.0;
 /// Natural logarithm of how much wider the window becomes by a drag across the whole picture.
 const WINDOW_PER_WIDTH: f64 = 2.0;
 
+/// How far the eye was when it began to go round an object that was all in the frame; while it does, that stays there.
+#[derive(Debug, Default)]
+pub(crate) struct Orbit {
+    distance: Option<f64>,
+}
+
+/// Room for rounding in what is seen of an object that was framed exactly.
+const ROUNDING: f64 = 1.0 + 1e-3;
+
+impl Orbit {
+    /// Begins to go round, from where the eye is.
+    pub(crate) fn begin(camera: &Camera, outline: Option<&Outline>) -> Self {
+        let is_whole = |outline: &&Outline| camera.distance * ROUNDING >= outline.least_distance(camera);
+        Self { distance: outline.filter(is_whole).map(|_| camera.distance) }
+    }
+
+    /// Goes as far away as the object needs from this side, and comes back where it does not.
+    pub(crate) fn keep_in_frame(&self, camera: &mut Camera, outline: Option<&Outline>) {
+        if let Some((distance, outline)) = self.distance.zip(outline) {
+            camera.distance = distance.max(outline.least_distance(camera));
+        }
+    }
+}
+
 /// Applies what the user does on the picture to the camera, or, while L is held, to a light; with the right
 /// button, to level and window of the transfer function.
 ///
-/// `zooms`: the wheel is not needed elsewhere. `range`: the values of the volume, if there is one.
+/// `zooms`: the wheel is not needed elsewhere. `range`: the values of the volume, if there is one. `outline`: of the
+/// object, if it is known.
 pub(crate) fn navigate(
     ui: &egui::Ui,
     response: &Response,
@@ -28,9 +54,14 @@ pub(crate) fn navigate(
     selected: usize,
     zooms: bool,
     range: Option<ValueRange>,
+    orbit: &mut Orbit,
+    outline: Option<&Outline>,
 ) {
     let Settings { camera, lights, transfer, .. } = settings;
     let (width, height) = (f64::from(response.rect.width()), f64::from(response.rect.height()));
+    if response.drag_started() {
+        *orbit = Orbit::begin(camera, outline);
+    }
     let delta = response.drag_delta();
     let (dx, dy) = (f64::from(delta.x), f64::from(delta.y));
     let shift = ui.input(|input| input.modifiers.shift);
@@ -47,6 +78,7 @@ pub(crate) fn navigate(
         camera.pan(dx, dy, width, height);
     } else if response.dragged_by(PointerButton::Primary) {
         camera.orbit(dx * DEGREES_PER_POINT, dy * DEGREES_PER_POINT);
+        orbit.keep_in_frame(camera, outline);
     }
     if zooms && response.contains_pointer() {
         let notches = wheel_notches(ui);
@@ -54,6 +86,8 @@ pub(crate) fn navigate(
         if notches != 0.0 || pinch != 1.0 {
             let factor = ZOOM_PER_NOTCH.powf(-notches) / f64::from(pinch);
             let at = response.hover_pos().unwrap_or(response.rect.center()) - response.rect.min;
+            // As near as somebody wants it from now on.
+            *orbit = Orbit::default();
             camera.zoom_at(factor, dvec2(f64::from(at.x), f64::from(at.y)), dvec2(width, height));
         }
     }

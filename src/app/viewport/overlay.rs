@@ -7,17 +7,15 @@ use eframe::egui::{
 };
 use glam::DVec3;
 
-use super::sides::{Letters, SIDES, letters};
+use super::sides::{Letters, letters};
 use super::view_projection::ViewProjection;
 use crate::app::common::theme;
-use crate::app::text;
+use crate::export::{SIDES, scale_bar as bar_for};
 use crate::math::SceneSpace;
 use crate::model::{Camera, StandardView};
 
 /// Edge of the cube in points, before it is turned.
 const CUBE: f32 = 44.0;
-/// The scale bar is at most this share of the picture's width.
-const LONGEST_BAR: f64 = 0.25;
 
 /// Whether the overlay is shown.
 #[derive(Debug, Clone, Copy)]
@@ -83,28 +81,6 @@ impl Overlay {
     }
 }
 
-/// A length that fits, and what it is in the unit that suits it; in voxels where nobody knows how large these are.
-fn bar_length_mm(longest_mm: f64, has_unknown_scale: bool) -> Option<(f64, String)> {
-    if !(longest_mm.is_finite() && longest_mm > 0.0) {
-        return None;
-    }
-    // 1, 2 or 5 times a power of ten.
-    let power = 10f64.powf(longest_mm.log10().floor());
-    let step = [5.0, 2.0, 1.0].into_iter().find(|step| step * power <= longest_mm).unwrap_or(1.0);
-    let length = step * power;
-    let (value, unit) = match length {
-        length if has_unknown_scale => (length, text::overlay::VOXELS),
-        length if length >= 1e6 => (length * 1e-6, text::overlay::KILOMETRES),
-        length if length >= 1e3 => (length * 1e-3, text::overlay::METRES),
-        length if length >= 10.0 => (length / 10.0, text::overlay::CENTIMETRES),
-        length if length >= 1.0 => (length, text::overlay::MILLIMETRES),
-        length if length >= 1e-3 => (length * 1e3, text::overlay::MICROMETRES),
-        length => (length * 1e6, text::overlay::NANOMETRES),
-    };
-    // At most one digit that is not zero: no rounding shows.
-    Some((length, text::overlay::length((value * 1e3).round() / 1e3, unit)))
-}
-
 /// A bar at the bottom left whose length holds at the middle of the view.
 fn scale_bar(
     painter: &Painter,
@@ -114,11 +90,8 @@ fn scale_bar(
 ) {
     let [width, height] = [picture.width(), picture.height().max(1.0)].map(f64::from);
     let mm_per_point = camera.pixel_at_target(width, height) * scene.mm_per_unit;
-    let longest_mm = mm_per_point * LONGEST_BAR * f64::from(picture.width());
-    let Some((length_mm, text)) = bar_length_mm(longest_mm, has_unknown_scale) else {
-        return;
-    };
-    let length = (length_mm / mm_per_point) as f32;
+    let Some(bar) = bar_for(mm_per_point * width, has_unknown_scale) else { return };
+    let length = (bar.length_mm / mm_per_point) as f32;
     let left = pos2(picture.left() + 16.0, picture.bottom() - 16.0);
     let right = left + vec2(length, 0.0);
     for (width, ink) in [(4.0, theme::OUTLINE), (1.5, theme::EYE_CURVE)] {
@@ -129,7 +102,7 @@ fn scale_bar(
         }
     }
     let middle = left + vec2(length / 2.0, -6.0);
-    outlined(painter, middle, Align2::CENTER_BOTTOM, &text);
+    outlined(painter, middle, Align2::CENTER_BOTTOM, &bar.words);
 }
 
 /// Text that can be read on any picture.
@@ -223,25 +196,6 @@ fn contains(corners: &[Pos2; 4], point: Pos2) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn bars_have_round_lengths_and_units_that_suit_them() {
-        for (longest, length, text) in [
-            (7.3, 5.0, "5 mm"),
-            (49.0, 20.0, "2 cm"),
-            (1.0, 1.0, "1 mm"),
-            (0.0042, 0.002, "2 µm"),
-            (2.6e3, 2e3, "2 m"),
-            (9.9e-5, 5e-5, "50 nm"),
-        ] {
-            let (found, words) = bar_length_mm(longest, false).unwrap();
-            assert!((found / length - 1.0).abs() < 1e-9, "{longest}: {found}");
-            assert_eq!(words, text);
-        }
-        assert_eq!(bar_length_mm(2.6e3, true), Some((2e3, "2000 voxels".to_owned())));
-        assert_eq!(bar_length_mm(f64::NAN, false), None);
-        assert_eq!(bar_length_mm(0.0, false), None);
-    }
 
     #[test]
     fn polygons_hold_what_is_in_them() {

@@ -1,48 +1,12 @@
-//! The sides of a volume, and the letters at the edges of the picture that say which side of a body is where: right and
-//! left are never guessed.
+//! The letters at the edges of the picture that say which side of a body is where.
 
 use eframe::egui::{Align2, Pos2, Rect, vec2};
-use glam::DVec3;
 
-use crate::app::text;
+use crate::export::sides;
 use crate::model::Camera;
 
 /// Points from the edge of the picture.
 const MARGIN: f32 = 8.0;
-
-/// A side is named where it lies in that direction by at least this share: an edge that is 17° off says one side, and
-/// one between two says both.
-const LEAST: f64 = 0.3;
-
-/// An edge names no more sides than this.
-const MOST: usize = 2;
-
-/// Directions of the scene, and what is written there: signs, or for bodies what lies there.
-pub(super) const SIDES: [(DVec3, [&str; 2]); 6] = [
-    (DVec3::X, text::overlay::RIGHT),
-    (DVec3::NEG_X, text::overlay::LEFT),
-    (DVec3::Y, text::overlay::ANTERIOR),
-    (DVec3::NEG_Y, text::overlay::POSTERIOR),
-    (DVec3::Z, text::overlay::SUPERIOR),
-    (DVec3::NEG_Z, text::overlay::INFERIOR),
-];
-
-/// The sides of a body that lie in a direction of its scene, the most first.
-fn sides(direction: DVec3) -> String {
-    let mut found: Vec<(f64, &str)> = SIDES
-        .iter()
-        .map(|(side, [_, letter])| (side.dot(direction), *letter))
-        .filter(|(share, _)| *share >= LEAST)
-        .collect();
-    found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    found.into_iter().take(MOST).map(|(_, letter)| letter).collect()
-}
-
-/// What lies to the right, to the left, at the top and at the bottom of a picture of a body.
-fn around(camera: &Camera) -> [String; 4] {
-    let view = camera.scene_from_view();
-    [view.x_axis, -view.x_axis, view.y_axis, -view.y_axis].map(sides)
-}
 
 /// What is written at an edge of the picture.
 pub(super) struct Letters {
@@ -54,7 +18,7 @@ pub(super) struct Letters {
 
 /// Which sides of a body are where in a picture of it, or a part of one.
 pub(super) fn letters(picture: Rect, camera: &Camera) -> [Letters; 4] {
-    let [right, left, top, bottom] = around(camera);
+    let [right, left, top, bottom] = sides(camera);
     [
         (right, picture.right_center() - vec2(MARGIN, 0.0), Align2::RIGHT_CENTER),
         (left, picture.left_center() + vec2(MARGIN, 0.0), Align2::LEFT_CENTER),
@@ -62,137 +26,4 @@ pub(super) fn letters(picture: Rect, camera: &Camera) -> [Letters; 4] {
         (bottom, picture.center_bottom() - vec2(0.0, MARGIN), Align2::CENTER_BOTTOM),
     ]
     .map(|(text, at, align)| Letters { at, align, text })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::data::Volume;
-    use crate::data::load::{LoadControl, LoadOptions, load};
-    use crate::model::{SceneAxis, StandardView};
-
-    /// A volume of 8 × 9 × 10 voxels whose axes run as a header says.
-    fn volume(space: &str, directions: [[i32; 3]; 3]) -> Volume {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("head.nrrd");
-        let [a, b, c] = directions.map(|[x, y, z]| format!("({x},{y},{z})"));
-        let header = format!(
-            "NRRD0004\ntype: uint8\ndimension: 3\nspace: {space}\nsizes: 8 9 10\nspace directions: {a} {b} {c}\n\
-             space origin: (0,0,0)\nencoding: raw\n\n"
-        );
-        std::fs::write(&path, [header.as_bytes(), &[7; 720]].concat()).unwrap();
-        load(&path, &LoadOptions::default(), &LoadControl::new()).unwrap()
-    }
-
-    /// The letter of a direction in the words of a header: right-anterior-superior, or the opposite where it says so.
-    fn letter_of(space: &str, direction: [i32; 3]) -> &'static str {
-        let words: Vec<&str> = space.split('-').collect();
-        let axis = direction.iter().position(|&c| c != 0).unwrap();
-        match (words[axis], direction[axis] > 0) {
-            ("right", true) | ("left", false) => "R",
-            ("left", true) | ("right", false) => "L",
-            ("anterior", true) | ("posterior", false) => "A",
-            ("posterior", true) | ("anterior", false) => "P",
-            ("superior", true) | ("inferior", false) => "S",
-            _ => "I",
-        }
-    }
-
-    #[test]
-    fn letters_are_where_the_file_says() {
-        let axes = [
-            [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
-            [[-1, 0, 0], [0, 1, 0], [0, 0, -1]],
-            [[0, 0, 1], [1, 0, 0], [0, -1, 0]],
-        ];
-        for space in ["right-anterior-superior", "left-posterior-superior", "left-anterior-superior"] {
-            for directions in axes {
-                let volume = volume(space, directions);
-                assert!(volume.is_anatomical());
-                let scene = volume.scene();
-                for up in SceneAxis::ALL {
-                    for view in StandardView::ALL.into_iter().take(6) {
-                        let mut camera = Camera { up, ..Camera::default() };
-                        camera.look_from(view);
-                        let place = |index: DVec3| {
-                            let point = scene.scene_from_index.transform_point3(index);
-                            let (x, y, _) = camera.pixel_from_scene(point, 100.0, 100.0).unwrap();
-                            (x, y)
-                        };
-                        let middle = DVec3::new(3.5, 4.0, 4.5);
-                        let [right, left, top, bottom] = around(&camera);
-                        for (axis, step) in DVec3::AXES.into_iter().enumerate() {
-                            let (from, to) = (place(middle - step), place(middle + step));
-                            let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-                            if dx * dx + dy * dy < 1.0 {
-                                // It runs along the line of sight.
-                                continue;
-                            }
-                            let edge = match (dx.abs() > dy.abs(), dx > 0.0, dy > 0.0) {
-                                (true, true, _) => &right,
-                                (true, false, _) => &left,
-                                (false, _, true) => &bottom,
-                                (false, _, false) => &top,
-                            };
-                            let wanted = letter_of(space, directions[axis]);
-                            assert_eq!(edge, wanted, "{space} {directions:?} {view:?} with {up:?} up");
-                        }
-                    }
-                }
-            }
-        }
-    }
-
-    /// Heads with an L on their left, written by other programs with other axes first and in other directions.
-    #[test]
-    fn the_left_of_a_head_is_named_so_in_every_format() {
-        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/oracle/phantom");
-        let (mut bodies, mut others) = (0, 0);
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            let name = path.file_name().unwrap().to_string_lossy().into_owned();
-            // Bare numbers are opened by their description.
-            if name.rsplit('.').next() == Some("bin") {
-                continue;
-            }
-            let volume = load(&path, &LoadOptions::default(), &LoadControl::new()).unwrap();
-            let is_body = [".nrrd", ".nii.gz", ".mha", ".dcm"].iter().any(|ending| name.ends_with(ending));
-            assert_eq!(volume.is_anatomical(), is_body, "{name}");
-            let ([nx, ny, _], scene) = (volume.dims(), volume.scene());
-            let marked: Vec<DVec3> = (0..volume.voxel_count())
-                .filter(|&voxel| volume.samples().value(voxel) == 120.0)
-                .map(|voxel| {
-                    DVec3::new((voxel % nx) as f64, (voxel / nx % ny) as f64, (voxel / nx / ny) as f64)
-                })
-                .map(|index| scene.scene_from_index.transform_point3(index))
-                .collect();
-            let middle = marked.iter().sum::<DVec3>() / marked.len() as f64;
-            // The side of the cube that it lies behind.
-            let (_, names) =
-                SIDES.into_iter().max_by(|a, b| a.0.dot(middle).total_cmp(&b.0.dot(middle))).unwrap();
-            assert_eq!(names, text::overlay::LEFT, "{name}");
-            assert_eq!(names[usize::from(is_body)], if is_body { "L" } else { "−x" }, "{name}");
-            // Seen from the front it is on the right, and the letter there says so.
-            let mut camera = Camera::default();
-            camera.look_from(StandardView::PlusY);
-            let (x, ..) = camera.pixel_from_scene(middle, 100.0, 100.0).unwrap();
-            assert!(x > 60.0, "{name}: {x}");
-            assert_eq!(around(&camera)[0], "L");
-            *(if is_body { &mut bodies } else { &mut others }) += 1;
-        }
-        assert!(bodies > 50 && others > 15, "{bodies} of bodies, {others} others");
-    }
-
-    #[test]
-    fn faces_are_seen_as_a_mirror_does_not_show_them() {
-        // From the front, a patient's right is on the left; from above the head, the face at the bottom.
-        let mut camera = Camera::default();
-        camera.look_from(StandardView::PlusY);
-        assert_eq!(around(&camera), ["L", "R", "S", "I"]);
-        camera.look_from(StandardView::PlusZ);
-        assert_eq!(around(&camera), ["R", "L", "A", "P"]);
-        camera.elevation_deg = 0.0;
-        camera.azimuth_deg = 60.0;
-        assert_eq!(around(&camera)[..2], ["LA", "RP"]);
-    }
 }

@@ -37,6 +37,8 @@ pub(crate) enum Purpose {
     SaveSettings,
     /// Where to export a picture.
     ExportPicture,
+    /// Where to export a picture of all that is kept.
+    ExportKept,
     /// Where to export a light volume, or a slice of it.
     ExportLight,
 }
@@ -44,7 +46,7 @@ pub(crate) enum Purpose {
 impl Purpose {
     /// Whether a file is written at once, which the desktop's dialog asks about by itself.
     fn writes(self) -> bool {
-        matches!(self, Self::SaveSettings | Self::ExportTransfer | Self::ExportLight)
+        matches!(self, Self::SaveSettings | Self::ExportTransfer | Self::ExportLight | Self::ExportKept)
     }
 
     /// How the user is asked.
@@ -60,6 +62,7 @@ impl Purpose {
             Self::CompareSettings => text::files::COMPARE_SETTINGS,
             Self::SaveSettings => text::files::SAVE_SETTINGS,
             Self::ExportPicture => text::files::EXPORT_PICTURE,
+            Self::ExportKept => text::files::EXPORT_KEPT,
             Self::ExportLight => text::files::EXPORT_LIGHT,
         }
     }
@@ -131,6 +134,10 @@ impl Files {
             Purpose::ExportPicture => {
                 let dialog = dialog.add_filter(text::files::PICTURES, &["png", "exr", "gif", "mp4"]);
                 Box::pin(dialog.set_file_name("picture.png").save_file())
+            }
+            Purpose::ExportKept => {
+                let dialog = dialog.add_filter(text::files::PICTURES, &["png"]);
+                Box::pin(dialog.set_file_name("contact-sheet.png").save_file())
             }
             Purpose::ExportLight => {
                 let dialog = dialog.add_filter(text::files::LIGHT_VOLUME, &["nrrd"]);

@@ -28,7 +28,7 @@ impl Looks {
 }
 
 /// A picture for the window, or two that are compared. Requests are the same when they need the same products:
-/// names and saved views do not count.
+/// names and what is kept do not count.
 #[derive(Debug, Clone)]
 pub(in crate::app) struct FrameRequest {
     /// Counts the volumes, so that a picture of an earlier one is not taken for one of this.

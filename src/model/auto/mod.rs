@@ -22,6 +22,7 @@ mod view;
 mod visible;
 
 pub use self::floor::{floor_color, wants_floor};
+pub use self::frame::Outline;
 pub use self::looks::{Proposal, looks};
 pub use self::treated::{in_place_of, treated_as};
 

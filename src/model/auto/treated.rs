@@ -21,17 +21,17 @@ pub fn treated_as(
 /// A first look in place of settings.
 ///
 /// What has nothing to do with the kind of data stays as it is there: how the picture is made and shown, shadows, cuts,
-/// what the floor looks like, and saved views.
+/// what the floor looks like, and what is kept.
 #[must_use]
 pub fn in_place_of(look: Settings, settings: &Settings) -> Settings {
-    let Settings { cuts, output, shadows, sampling, floor, views, volume, .. } = settings.clone();
+    let Settings { cuts, output, shadows, sampling, floor, kept, volume, .. } = settings.clone();
     Settings {
         sampling: Sampling { classification: look.sampling.classification, ..sampling },
         floor: Floor { height: look.floor.height, ..floor },
         cuts,
         output,
         shadows,
-        views,
+        kept,
         volume,
         ..look
     }
@@ -55,7 +55,7 @@ mod tests {
         (mine.shadows.algorithm, mine.shadows.strength) = (ShadowAlgorithm::Raycast, 0.5);
         (mine.sampling.engine, mine.sampling.slab) = (Engine::Scatter, 2.0);
         (mine.floor.on, mine.floor.color, mine.floor.height) = (true, [0.2; 3], 3.0);
-        mine.views.insert(3, mine.camera.clone());
+        mine.keep_view_under(3, "front");
         let treated = |kind: Option<KindName>, mine: &Settings| {
             in_place_of(treated_as(&volume, &histogram, kind, mine.camera.up), mine)
         };
@@ -68,7 +68,7 @@ mod tests {
         assert_eq!(labels.sampling.classification, Classification::Pre);
         assert_eq!(labels.sampling.engine, Engine::Scatter);
         let kept = |look: &Settings| {
-            (look.cuts.clone(), look.output.clone(), look.shadows.clone(), look.views.clone())
+            (look.cuts.clone(), look.output.clone(), look.shadows.clone(), look.kept.clone())
         };
         assert_eq!(kept(&labels), kept(&mine));
         // And back.

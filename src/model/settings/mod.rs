@@ -1,9 +1,10 @@
 //! The one value that is the whole look of a picture.
 
-pub(super) mod camera;
 mod corrected;
 pub(super) mod cut;
+pub(super) mod eye;
 pub(super) mod floor;
+pub(super) mod kept;
 pub(super) mod labels;
 pub(super) mod length;
 pub(super) mod light;
@@ -11,18 +12,14 @@ pub(super) mod quality;
 pub(super) mod range;
 pub(super) mod sampling;
 pub(super) mod sanitise;
-pub(super) mod scene_axis;
 pub(super) mod shadows;
-pub(super) mod view;
-
-use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
 use super::{
-    BakedTransfer, Camera, Classification, Cuts, DensityRange, Engine, Floor, Gradients, Kernel, LabelTable,
-    Length, Light, LightStorage, NearField, Quadrature, Sampling, Scattering, ShadowAlgorithm, Shadows,
-    SheetOrder, Sky, Slabs, TransferFunction,
+    BakedTransfer, Camera, Classification, Cuts, DensityRange, Engine, Floor, Gradients, Kept, Kernel,
+    LabelTable, Length, Light, LightStorage, NearField, Quadrature, Sampling, Scattering, ShadowAlgorithm,
+    Shadows, SheetOrder, Sky, Slabs, TransferFunction,
 };
 use crate::data::{BOUNDED_SIGMA, Corrections, SIGMA_TOLERANCE, ValueRange};
 use crate::math::SceneSpace;
@@ -68,8 +65,9 @@ pub struct Settings {
     pub sampling: Sampling,
     /// What happens to the picture at the end.
     pub output: Output,
-    /// Views that are kept, by their digit; they are no part of the picture.
-    pub views: BTreeMap<u8, Camera>,
+    /// Views and looks that are kept, in the order in which they are shown; they are no part of the picture. At most
+    /// [`super::MAX_KEPT`].
+    pub kept: Vec<Kept>,
     /// What somebody knows better than the file of the volume. It belongs to that file: looks for any volume neither have
     /// nor change it.
     pub volume: Corrections,
@@ -94,7 +92,7 @@ impl Default for Settings {
             floor: Floor::default(),
             sampling: Sampling::default(),
             output: Output::default(),
-            views: BTreeMap::new(),
+            kept: Vec::new(),
             volume: Corrections::default(),
         }
     }

@@ -3,8 +3,8 @@
 
 use crate::data::single_line;
 use crate::model::{
-    AreaShadows, Background, Camera, ClipPlane, ControlPoint, CropBox, Cuts, Floor, Hood, Kernel, Light,
-    MAX_ANISOTROPY, MAX_BIAS_VOXELS, MAX_BOUNCES, MAX_EXPOSURE, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS,
+    AreaShadows, Background, Camera, ClipPlane, ControlPoint, CropBox, Cuts, Floor, Hood, Kept, Kernel,
+    Light, MAX_ANISOTROPY, MAX_BIAS_VOXELS, MAX_BOUNCES, MAX_EXPOSURE, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS,
     MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SAMPLES, MAX_LIGHT_SIZE, MAX_NAME, MAX_PICTURE_RADIANCE,
     MAX_PLANE_OFFSET, MAX_POINTS, MIN_CROP, MIN_EXPOSURE, Output, SKY_DIRECTIONS, Sampling, Scattering,
     Settings, Shading, Shadows, Sky, SkyPicture,
@@ -33,8 +33,9 @@ impl Settings {
             }
         };
         let default = Self::default();
-        self.views.retain(|slot, _| (1..=9).contains(slot));
-        for camera in self.views.values_mut().chain([&mut self.camera]) {
+        self.sanitise_kept();
+        let views = self.kept.iter_mut().filter_map(Kept::as_view_mut);
+        for camera in views.chain([&mut self.camera]) {
             let Camera {
                 projection: _,
                 up: _,

@@ -11,20 +11,20 @@ use serde_json::{Map, Number, Value};
 
 use super::preset_error::PresetError;
 use crate::data::plain;
-use crate::model::{MAX_LIGHTS, MAX_NAME, MAX_POINTS};
+use crate::model::{MAX_KEPT, MAX_KEPT_BYTES, MAX_LIGHTS, MAX_NAME, MAX_POINTS};
 
-/// Bytes of the longest look: a transfer function of [`MAX_POINTS`] points has nearly as many, written with an item a
-/// line.
-pub const MAX_LOOK_BYTES: usize = 1 << 20;
+/// Bytes of the longest look: a transfer function of [`MAX_POINTS`] points has nearly a mebibyte, written with an item a
+/// line, and there is what is kept beside it.
+pub const MAX_LOOK_BYTES: usize = (1 << 20) + MAX_KEPT_BYTES;
 
 /// Lists and objects in one another: settings have 6 levels.
 const MAX_DEPTH: usize = 64;
 
 /// Values in a look: two transfer functions have 2 × 4096 points of 8, a table of labels 4096 of 8, and the rest a few
-/// hundred.
-const MAX_VALUES: usize = 140_000;
+/// hundred; and what is kept has no more than one for every eight bytes.
+const MAX_VALUES: usize = 140_000 + MAX_KEPT_BYTES / 8;
 
-/// Views that can be kept: one for each digit.
+/// Views that could be kept before they had names: one for each digit.
 const MAX_VIEWS: usize = 9;
 
 /// Characters of a text in a remark, whose name begins with an underscore: the longest paths.
@@ -117,6 +117,7 @@ impl Place<'_> {
         match self.path.as_str() {
             "lights" => MAX_LIGHTS,
             "views" => MAX_VIEWS,
+            "kept" => MAX_KEPT,
             // Of transfer functions, tables of labels, and of whatever later versions may have.
             _ => MAX_POINTS,
         }
@@ -277,9 +278,9 @@ mod tests {
         assert!(refused(&nested(MAX_DEPTH + 1)).contains("nested deeper than the 64 levels"));
         assert!(!refused(&nested(200)).is_empty());
         let row = format!("[{}0],", "0,".repeat(39));
-        let nothings = format!("[{}0]", row.repeat(4000));
+        let nothings = format!("[{}0]", row.repeat(5000));
         assert!(refused(&nothings).contains("values"), "{}", refused(&nothings));
-        assert!(refused(&" ".repeat(MAX_LOOK_BYTES + 1)).contains("1 MiB"));
+        assert!(refused(&" ".repeat(MAX_LOOK_BYTES + 1)).contains("1.25 MiB"));
         assert!(!refused("{} {}").is_empty() && !refused("").is_empty() && !refused("[1e999]").is_empty());
     }
 }

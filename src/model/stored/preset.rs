@@ -178,7 +178,7 @@ fn merge(base: &mut Value, overlay: &Value) {
 }
 
 /// `{"voxels": 1}` laid over `{"mm": 2}`: two variants of one enum, which must not be mixed. Numbers are no variants,
-/// but those of labels and saved views.
+/// but those of labels.
 fn is_tagged_swap(base: &serde_json::Map<String, Value>, overlay: &serde_json::Map<String, Value>) -> bool {
     let is_variant = |key: Option<&String>| key.is_some_and(|key| key.parse::<i64>().is_err());
     let (before, after) = (base.keys().next(), overlay.keys().next());
@@ -281,9 +281,9 @@ mod tests {
         assert_eq!(apply_path(&in_mm, "opacity_unit.voxels", "3").unwrap().opacity_unit, Length::Voxels(3.0));
         // What has one entry, or is a text, need not be an enum.
         let mut one_view = Settings::default();
-        one_view.views.insert(3, Camera::default());
+        assert!(one_view.keep_view_under(3, "front"));
         let camera = serde_json::to_string(&Camera::default()).unwrap();
-        for path in ["views.5", "sampling.kernel.gaussian.sigmo", "lights.0.name.x", "shadows.strength.x"] {
+        for path in ["kept.5", "sampling.kernel.gaussian.sigmo", "lights.0.name.x", "shadows.strength.x"] {
             let mut settings = one_view.clone();
             settings.sampling.kernel = Kernel::Gaussian { sigma: 0.5 };
             let refused = apply_path(&settings, path, &camera).unwrap_err();

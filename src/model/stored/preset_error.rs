@@ -16,7 +16,7 @@ pub enum PresetError {
     #[error("a preset must be a JSON object, for instance {{\"shadows\": {{\"strength\": 0.8}}}}")]
     NotAnObject,
     /// Longer than any look.
-    #[error("it has {bytes} bytes, and a look has at most 1 MiB")]
+    #[error("it has {bytes} bytes, and a look has at most 1.25 MiB")]
     TooLong {
         /// How many there are.
         bytes: usize,

@@ -1,6 +1,6 @@
 //! Settings under the names that they had before: what was saved stays readable.
 
-use serde_json::Value;
+use serde_json::{Map, Value, json};
 
 /// Fields that were called otherwise, by their path: (before, now).
 const FIELDS: [(&str, &str); 1] = [("ground", "floor")];
@@ -22,8 +22,28 @@ pub(super) fn current_path(path: &str) -> String {
     path.to_owned()
 }
 
+/// Puts views that were kept under a digit each, and had no names, among what is kept: in the order of their digits.
+fn gather_views(fields: &mut Map<String, Value>) {
+    let Some(Value::Object(views)) = fields.get("views") else { return };
+    let mut views: Vec<(u8, Value)> = views
+        .iter()
+        .filter_map(|(digit, camera)| Some((digit.parse().ok()?, camera.clone())))
+        .filter(|(_, camera)| camera.is_object())
+        .collect();
+    views.sort_by_key(|(digit, _)| *digit);
+    let kept = views.into_iter().map(
+        |(digit, camera)| json!({"name": format!("View {digit}"), "digit": digit, "what": {"view": camera}}),
+    );
+    let kept = Value::Array(kept.collect());
+    fields.remove("views");
+    fields.entry("kept").or_insert(kept);
+}
+
 /// Replaces names from before in a value that stands at a path, and in all that it holds.
 pub(super) fn rename(path: &str, value: &mut Value) {
+    if let (true, Value::Object(fields)) = (path.is_empty(), &mut *value) {
+        gather_views(fields);
+    }
     let below = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
     match value {
         Value::Object(fields) => {
@@ -78,6 +98,17 @@ mod tests {
             "_note": "world",
         });
         assert_eq!(saved, now);
+    }
+
+    #[test]
+    fn views_of_digits_are_kept_in_their_order() {
+        let mut saved = json!({"views": {"7": {"distance": 2.0}, "3": {"distance": 3.0}, "x": {}, "4": 1}});
+        rename("", &mut saved);
+        let view = |digit: u8, distance: f64| json!({"name": format!("View {digit}"), "digit": digit, "what": {"view": {"distance": distance}}});
+        assert_eq!(saved, json!({"kept": [view(3, 3.0), view(7, 2.0)]}));
+        let mut both = json!({"views": {"7": {}}, "kept": []});
+        rename("", &mut both);
+        assert_eq!(both, json!({"kept": []}), "what is newer counts");
     }
 
     #[test]

@@ -18,9 +18,15 @@ fn added() -> [(u64, &'static str, &'static str, Value); 5] {
 pub(super) fn complete(record: &mut Value) {
     let Some(schema) = record.get("schema").and_then(Value::as_u64) else { return };
     let Value::Object(groups) = record else { return };
-    let views = groups.get_mut("views").and_then(Value::as_object_mut);
-    for camera in views.into_iter().flat_map(|views| views.values_mut()) {
-        complete_camera(camera);
+    let kept = groups.get_mut("kept").and_then(Value::as_array_mut);
+    for what in kept.into_iter().flatten().filter_map(|kept| kept.get_mut("what")) {
+        if let Some(camera) = what.get_mut("view") {
+            complete_camera(camera);
+        }
+        // It names the schema that it was written with.
+        if let Some(look) = what.get_mut("look") {
+            complete(look);
+        }
     }
     if let Some(camera) = groups.get_mut("camera") {
         complete_camera(camera);
@@ -151,15 +157,16 @@ mod tests {
     fn saved_cameras_see_what_they_saw() {
         let mut now = Settings::default();
         now.camera.fit = Fit::Frame;
-        now.views.insert(1, now.camera.clone());
+        assert!(now.keep_view_under(1, "front"));
         let load = |text: &str| load_json(&now, text).expect("settings").0;
         let before = load(
-            r#"{"schema": 2, "camera": {"distance": 4.0}, "views": {"1": {"distance": 3.0}, "2":
+            r#"{"schema": 2, "camera": {"distance": 4.0}, "views": {"2":
                 {"projection": "perspective", "azimuth_deg": 0.0, "elevation_deg": 0.0, "roll_deg": 0.0,
                 "target": [0.0, 0.0, 0.0], "distance": 3.0, "fov_y_deg": 30.0}}}"#,
         );
         assert_eq!((before.camera.fit, before.camera.distance), (Fit::Height, 4.0));
-        assert!(before.views.len() == 2 && before.views.values().all(|camera| camera.fit == Fit::Height));
+        assert_eq!(before.kept.iter().map(|kept| kept.digit).collect::<Vec<_>>(), [Some(2)]);
+        assert!(before.kept.iter().all(|kept| kept.camera().fit == Fit::Height));
         // What says nothing of the frame leaves it, and what names it counts.
         for kept in [
             r#"{"schema": 1, "shadows": {"gain": 2.0}}"#,
@@ -222,7 +229,7 @@ mod tests {
         let mut nonsense = serde_json::json!({"schema": 1, "shadows": 3});
         complete(&mut nonsense);
         assert_eq!(nonsense["shadows"], 3);
-        let mut nonsense = serde_json::json!({"schema": 2, "camera": [], "views": {"1": 3}});
+        let mut nonsense = serde_json::json!({"schema": 2, "camera": [], "kept": [{"what": {"look": 3}}, 1]});
         complete(&mut nonsense);
         assert_eq!(nonsense["camera"], serde_json::json!([]));
     }

@@ -123,7 +123,7 @@ impl EyeKey {
             floor: _,
             sampling: _,
             output: _,
-            views: _,
+            kept: _,
             // In the identity of the volume that it is made into.
             volume: _,
         } = settings;

@@ -99,7 +99,7 @@ impl LightKey {
                     order: _,
                 },
             output: _,
-            views: _,
+            kept: _,
             // In the identity of the volume that it is made into.
             volume: _,
         } = &request.settings;

@@ -40,6 +40,9 @@ pub struct Arrival {
     /// Cosine between the surface's normal and the direction to the light, never less than 0 where both sides are lit;
     /// `None` where nothing is a surface.
     pub facing: Option<f64>,
+    /// Between which distances from the point, in scene units, most of what is lost on the way from the light's middle is
+    /// lost; none where hardly anything is, or where the light casts no shadows.
+    pub blocked: Option<[f64; 2]>,
 }
 
 /// Rays to the sky: a few milliseconds.
@@ -108,13 +111,16 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
                 let cone = light.cone();
                 cone.share(cone.axis.dot(-towards(light, point).0))
             };
-            let (middle, _) = towards(&light, point);
+            let (middle, distance) = towards(&light, point);
+            let blocked =
+                is_shadowed.then(|| rays.blocked(&lighting, &shading_cut, point, middle, distance)).flatten();
             let facing = normal.dot(middle);
             let facing = if is_one_sided && light.casts_shadows { facing } else { facing.abs() };
             Arrival {
                 transmittance: if is_shadowed { mean(&left) } else { 1.0 },
                 hood: mean(&through_hood),
                 facing: (normal != DVec3::ZERO).then_some(facing),
+                blocked,
             }
         })
         .collect();
@@ -346,7 +352,11 @@ mod tests {
         let wanted = 0.7_f64.powi(4);
         let [above, beside] = seen.lights[..] else { panic!("two lights") };
         assert!(above.transmittance < wanted && above.transmittance > 0.0, "{above:?}, less than {wanted}");
-        assert_eq!(beside.transmittance, 1.0, "it casts no shadows");
+        assert_eq!((beside.transmittance, beside.blocked), (1.0, None), "it casts no shadows");
+        // The slab: voxels 10 … 13 of 16, an eighth of a scene unit each, and what is seen lies at z = 4.5.
+        let [near, far] = above.blocked.expect("the slab");
+        assert!((0.55..0.85).contains(&near) && (0.95..1.25).contains(&far), "{near} … {far}");
+        assert!(far - near < 0.6, "{near} … {far}");
         assert_eq!(above.hood, 1.0);
     }
 }

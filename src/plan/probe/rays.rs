@@ -12,6 +12,12 @@ const SEEN: f64 = 0.5;
 /// Less than this share of a ray's light met: nothing is seen.
 const NOTHING: f64 = 0.03;
 
+/// The optical depth of what hardly dims a light: a tenth.
+const LITTLE: f64 = 0.1;
+
+/// Share of a loss that lies before what is called its place, and behind it.
+const ENDS: f64 = 0.1;
+
 /// Voxel edges (the smallest) per step of a ray.
 const STEP: f64 = 0.5;
 
@@ -85,6 +91,31 @@ impl Rays<'_> {
         let sum: f64 =
             (first..last).map(|k| self.extinction(table, point + towards * ((k as f64 + 0.5) * step))).sum();
         sum * step
+    }
+
+    /// Between which distances from a point towards a light all but a tenth of its loss at either end happens; none where
+    /// hardly anything is lost.
+    pub(super) fn blocked(
+        &self,
+        table: &BakedTransfer,
+        remains: &Region,
+        point: DVec3,
+        towards: DVec3,
+        distance: f64,
+    ) -> Option<[f64; 2]> {
+        let (enter, leave) = self.span(remains, point, towards)?;
+        let step = self.step();
+        let first = (enter / step).ceil().max(1.0) as usize;
+        let last = (leave.min(distance) / step).floor().max(1.0) as usize;
+        let mut met = Vec::new();
+        let mut sum = 0.0;
+        for k in first..last {
+            let at = (k as f64 + 0.5) * step;
+            sum += self.extinction(table, point + towards * at) * step;
+            met.push((at, sum));
+        }
+        let reaches = |share: f64| met.iter().find(|(_, met)| *met >= share * sum).map(|(at, _)| *at);
+        (sum >= LITTLE).then(|| Some([reaches(ENDS)?, reaches(1.0 - ENDS)?])).flatten()
     }
 
     fn extinction(&self, table: &BakedTransfer, point: DVec3) -> f64 {

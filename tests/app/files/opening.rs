@@ -88,7 +88,7 @@ fn the_next_file_can_have_the_look_of_this_one() {
     assert_ne!(harness.state().settings().lights, lights, "a first look of its own");
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::P);
     harness.run_steps(3);
-    harness.event(Event::Text("keep this look".to_owned()));
+    harness.event(Event::Text("next file with".to_owned()));
     harness.run_steps(3);
     harness.key_press(egui::Key::Enter);
     harness.run_steps(3);
@@ -135,7 +135,7 @@ fn the_first_run_has_hints_and_the_next_remembers() {
     let mut harness = start(Some("builtin:sphere:16"));
     assert!(harness.query_by_label("Close the hints").is_none());
     click(&mut harness, "File");
-    harness.get_by_label_contains("Go on where").click();
+    harness.get_by_label_contains("Reopen last session").click();
     harness.run_steps(3);
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("chair") && app.is_idle());
     assert_eq!(harness.state().settings(), &wanted);
@@ -161,7 +161,7 @@ fn a_file_whose_name_is_no_text_is_opened_again() {
     let name = harness.state().volume_name().unwrap().to_owned();
     assert!(harness.state().errors().is_empty(), "{:?}", harness.state().errors());
     drop(harness);
-    for again in ["Go on where", "Open recent"] {
+    for again in ["Reopen last session", "Open recent"] {
         let mut harness = start(SCENE.into());
         assert_eq!(harness.state().volume_name(), Some("chair"));
         click(&mut harness, "File");

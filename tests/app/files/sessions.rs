@@ -97,7 +97,7 @@ fn a_run_that_was_cut_off_is_offered() {
     std::fs::write(file.with_extension("lock"), "").unwrap();
 
     let mut harness = start();
-    let offer = "Go on where you left off?";
+    let offer = "Reopen the last session?";
     assert!(harness.query_by_label(offer).is_some());
     click(&mut harness, "Not now");
     assert!(harness.query_by_label(offer).is_none());
@@ -108,7 +108,7 @@ fn a_run_that_was_cut_off_is_offered() {
 
     std::fs::write(file.with_extension("lock"), "").unwrap();
     let mut harness = start();
-    click(&mut harness, "Go on");
+    click(&mut harness, "Reopen");
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("chair") && app.is_idle());
     assert_eq!(harness.state().settings().shadows.gain, 1.75);
     assert!(file.exists(), "and it stays");
@@ -134,7 +134,10 @@ fn after_three_failed_starts_the_file_is_left_out() {
     };
     let harness = start();
     assert_eq!(harness.state().volume_name(), Some("chair"));
-    assert!(harness.query_by_label("Something is not as it was").is_some());
+    assert!(
+        harness.query_by_label_contains("Something is not as it was: ").is_some(),
+        "with the reason in the row"
+    );
     drop(harness);
     assert_eq!(start().state().volume_name(), Some("sphere"), "one start was enough");
 }

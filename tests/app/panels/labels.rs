@@ -75,10 +75,10 @@ fn a_curve_takes_the_place_of_the_table_and_gives_it_back() {
     let (mut harness, _folder) = window_of(&[3, 9, 200]);
     let table = harness.state().settings().labels.clone();
     assert_eq!(table.get(9).map(|look| look.name.as_str()), Some("Left lung"));
-    assert!(harness.query_by_label("Transfer function").is_none(), "there is no curve");
+    assert!(harness.query_by_label("Transfer function plot").is_none(), "there is no curve");
     press(&mut harness, "Use a curve");
     assert!(harness.state().settings().labels.is_empty());
-    assert!(harness.query_by_label("Transfer function").is_some());
+    assert!(harness.query_by_label("Transfer function plot").is_some());
     assert!(harness.query_by_label("Show label 9").is_none());
     press(&mut harness, "Automatic");
     assert_eq!(harness.state().settings().labels, table);

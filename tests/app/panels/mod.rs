@@ -15,9 +15,9 @@ use crate::harness::{SCENE, bare_window, click, picture, render, wait_until, wai
 #[test]
 fn panels_change_settings() {
     let mut harness = bare_window();
-    click(&mut harness, "Perspective");
+    click(&mut harness, "Positional");
     assert_eq!(harness.state().settings().lights[0].kind, LightKind::Perspective);
-    click(&mut harness, "Parallel");
+    click(&mut harness, "Directional");
     assert_eq!(harness.state().settings().lights[0].kind, LightKind::Parallel);
     // Room for what follows.
     click(&mut harness, "Lights");
@@ -27,7 +27,7 @@ fn panels_change_settings() {
     click(&mut harness, "Orthographic");
     assert_eq!(harness.state().settings().camera.projection, Projection::Orthographic);
 
-    click(&mut harness, "Light opacity follows the eye's");
+    click(&mut harness, "Same opacity for light and eye");
     let settings = harness.state().settings();
     assert!(!settings.lighting.linked);
     assert_eq!(settings.lighting.curve, settings.transfer, "a fresh curve starts as the eye's");

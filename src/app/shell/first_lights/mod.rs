@@ -276,15 +276,15 @@ fn finished(step: &Step, before: &Step, after: &Settings) -> Step {
     if step.treated_as != before.treated_as || !is_alike(&step.settings, &before.settings) {
         return step.clone();
     }
-    let Settings { camera, views, .. } = step.settings.clone();
-    Step { settings: Settings { camera, views, ..after.clone() }, ..*step }
+    let Settings { camera, kept, .. } = step.settings.clone();
+    Step { settings: Settings { camera, kept, ..after.clone() }, ..*step }
 }
 
 /// Whether two looks are the same but for the view.
 fn is_alike(a: &Settings, b: &Settings) -> bool {
     let mut seen = a.clone();
     seen.camera.clone_from(&b.camera);
-    seen.views.clone_from(&b.views);
+    seen.kept.clone_from(&b.kept);
     seen == *b
 }
 

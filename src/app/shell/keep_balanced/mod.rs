@@ -225,7 +225,7 @@ fn brightness(settings: &Settings) -> Settings {
         floor: _,
         sampling,
         output: _,
-        views: _,
+        kept: _,
         volume,
     } = settings;
     let mut lights = lights.clone();

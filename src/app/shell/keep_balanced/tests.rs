@@ -190,7 +190,7 @@ fn what_does_not_make_shadows_darker_is_passed_over() {
         |look| look.output.background.top = [1.0; 3],
         |look| look.output.tone_map = crate::model::ToneMap::Clip,
         |look| look.sampling.engine = Engine::Scatter,
-        |look| look.views = [(1, look.camera.clone())].into(),
+        |look| assert!(look.keep_view_under(1, "front")),
     ];
     for change in changes {
         change(&mut window.settings);

@@ -2,5 +2,6 @@
 //! as another kind of data, correcting what its file says.
 
 pub(in crate::app) mod corrected;
+pub(in crate::app) mod framed;
 pub(in crate::app) mod treat_as;
 pub(in crate::app) mod upright;

@@ -81,7 +81,7 @@ impl App {
 
     /// Whether an axis of the scene points up in the first look. If not, it will, and then a command is carried out that
     /// needs that.
-    pub(in crate::app::shell) fn first_look_stands_on(
+    pub(in crate::app) fn first_look_stands_on(
         &mut self,
         up: SceneAxis,
         then: Option<Command>,
@@ -147,21 +147,6 @@ impl App {
             self.settings.camera.frame_as(&self.defaults.camera);
         }
         self.remember_up();
-    }
-
-    /// Looks from a view that was kept. Where the object stands otherwise in it, the room turns first.
-    pub(in crate::app::shell) fn recall_view(&mut self, slot: u8, ctx: &egui::Context) {
-        let Some(camera) = self.settings.views.get(&slot).cloned() else {
-            return self.messages.note(text::messages::no_view_kept(slot));
-        };
-        if camera.up != self.settings.camera.up {
-            if !self.first_look_stands_on(camera.up, Some(Command::RecallView(slot)), ctx) {
-                return;
-            }
-            self.settings.turn_object(ObjectTurn::Upright(camera.up));
-            self.settings.floor.height = self.defaults.floor.height;
-        }
-        self.settings.camera = camera;
     }
 
     /// Remembers for the folder of the volume how it stands. A file that says where the head is says nothing of others.

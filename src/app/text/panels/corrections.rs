@@ -5,7 +5,7 @@ use crate::data::{AxisOrder, SpacingUnit};
 
 /// The part, and why it could not be done.
 pub(crate) const TITLE: &str = "Corrections";
-pub(crate) const NOT_CORRECTED: &str = "the volume was not corrected";
+pub(crate) const NOT_CORRECTED: &str = "The volume was not corrected";
 
 pub(crate) const SPACING: Named =
     named("Spacing", "How far voxels are apart along the three axes of the file, in the unit below");

@@ -1,16 +1,18 @@
 //! What else settings are called, by which they are found; in small letters.
 
-pub(crate) const KIND_OF_LIGHT: &str = "parallel perspective sun lamp point spotlight spot directional";
+pub(crate) const KIND_OF_LIGHT: &str =
+    "parallel perspective sun lamp point spotlight spot hood directional positional";
 pub(crate) const BRIGHTNESS: &str = "brightness bright dark dim lighter darker";
 pub(crate) const AREA_LIGHT: &str = "area light soft shadows penumbra disc softbox window size";
 pub(crate) const LOCK: &str = "headlight follow camera attach";
 pub(crate) const FILL: &str = "fill light no shadow";
-pub(crate) const SHADOWS: &str = "shadow off on algorithm splatting ray tracing raycast";
+pub(crate) const SHADOWS: &str =
+    "shadow off on algorithm splatting ray tracing raycast direct per voxel sample";
 pub(crate) const QUALITY: &str = "quality fast fine exact sampling";
 pub(crate) const STRENGTH: &str = "shadow strength intensity opacity lighter shadows";
 pub(crate) const TOO_DARK: &str = "shadows too dark black brighten lift";
-pub(crate) const ACNE: &str = "self shadow acne shadow bias offset";
-pub(crate) const LIGHTING_CURVE: &str = "lighting transfer function unlink separate";
+pub(crate) const ACNE: &str = "self shadow acne light bias offset";
+pub(crate) const LIGHTING_CURVE: &str = "lighting transfer function link unlink separate follows the eye's";
 pub(crate) const GLASS: &str = "coloured colored shadows stained glass transmission tint spectral";
 pub(crate) const CONTACT: &str = "contact shadows near field sharp relief";
 pub(crate) const MEMORY: &str = "memory slow performance downsample reduce resolution";

@@ -3,9 +3,9 @@
 use crate::app::text::{Named, named};
 
 pub(crate) const PARALLEL: Named =
-    named("Parallel", "Like the sun: shadows have the size of what casts them");
+    named("Directional", "Parallel rays, like the sun: shadows have the size of what casts them");
 pub(crate) const PERSPECTIVE: Named =
-    named("Perspective", "Like a lamp at a point: shadows grow with the distance");
+    named("Positional", "From a place, like a lamp: shadows grow with the distance");
 
 pub(crate) const WITH_VOLUME: Named =
     named("The volume", "The light stays where it is: turning the camera rebuilds no shadows");
@@ -63,10 +63,8 @@ pub(crate) const SIZE: Named = named(
 pub(crate) const ASPECT: Named = named("Width by height", "1 is a square, 2 twice as wide as high");
 pub(crate) const TURN: Named = named("Turn", "Turns the rectangle about the line to the volume");
 
-pub(crate) const HOOD: Named = named(
-    "Hood",
-    "A lampshade: the light shines only within a cone around the line to the middle of the volume",
-);
+pub(crate) const HOOD: Named =
+    named("Spotlight", "The light shines only within a cone around the line to the middle of the volume");
 pub(crate) const CONE: Named = named("Cone", "From the middle of the cone to where no light is left");
 pub(crate) const RIM: Named = named("Rim", "How far inside that the light begins to fade; 0 is a hard edge");
 
@@ -125,7 +123,7 @@ pub(crate) fn handle(name: &str) -> String {
 
 /// The handle that opens and closes a light's hood.
 pub(crate) fn hood_handle(name: &str) -> String {
-    format!("Hood handle {name}")
+    format!("Spotlight handle {name}")
 }
 
 /// The handle on the border of a light that has a size.

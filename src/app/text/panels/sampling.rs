@@ -37,7 +37,7 @@ pub(crate) const GATHER: Named =
     named("Gather", "Pixels gather what voxels would splat: the same sums, many times faster");
 pub(crate) const SCATTER: Named = named(
     "Scatter",
-    "Every voxel is splatted, as in the paper; for comparison and teaching. Has no effect on direct shadows",
+    "Every voxel is splatted, as in the paper; for comparison and teaching. Has no effect on shadows per sample",
 );
 
 pub(crate) const ORDER: Named = named("Order", "What is composited, for the eye");

@@ -5,13 +5,13 @@ use crate::app::text::{Named, named};
 pub(crate) const ALGORITHM: Named = named("Shadows", "How light is attenuated on its way");
 pub(crate) const OFF: Named = named("Off", "Light reaches everything: only the shading is left");
 pub(crate) const SPLAT: Named =
-    named("Splat", "A light volume filled by sheet-buffer splatting: the quick way");
+    named("Splatting", "A light volume filled by sheet-buffer splatting: the quick way");
 pub(crate) const RAYCAST: Named = named(
-    "Ray",
+    "Per voxel",
     "A light volume filled by a ray from every voxel: a little sharper, many times slower when a light moves",
 );
 pub(crate) const DIRECT: Named = named(
-    "Direct",
+    "Per sample",
     "A ray to the light from every sample: the sharpest shadows; every picture takes as long as a light volume",
 );
 
@@ -28,7 +28,7 @@ pub(crate) const AMBIENT_OFFSET: Named = named(
 pub(crate) const GAIN: Named =
     named("Gain", "Multiplies the light that is left, up to full light: brightens half-shadows");
 pub(crate) const LIGHT_BIAS: Named = named(
-    "Light bias",
+    "Shadow bias",
     "Looks up the light a little nearer to its source: takes self-shadowing off surfaces",
 );
 
@@ -49,7 +49,7 @@ pub(crate) const KEEP_BALANCED: Named = named(
 pub(crate) const NEARLY_BLACK: Named = named(
     "Nearly black",
     "Share of what is seen that is nearly black. Light opacity below 1 lets light pass thin parts, a \
-     narrow Gaussian or a light bias frees surfaces from their own shadow, an ambient offset lifts all",
+     narrow Gaussian or a shadow bias frees surfaces from their own shadow, an ambient offset lifts all",
 );
 /// In place of a share that is not known yet.
 pub(crate) const UNKNOWN: &str = "–";
@@ -60,7 +60,7 @@ pub(crate) const LIGHT_OPACITY: Named = named(
      structures; refills the light volumes",
 );
 pub(crate) const LINKED: Named = named(
-    "Light opacity follows the eye's",
+    "Same opacity for light and eye",
     "Light meets the opacity that the eye sees. Unlinked, it gets a curve of its own in the editor below",
 );
 

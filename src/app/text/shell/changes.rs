@@ -25,7 +25,7 @@ pub(crate) fn of(before: &Settings, after: &Settings) -> Option<String> {
         floor,
         sampling,
         output,
-        views,
+        kept,
         volume,
     } = before;
     let parts = [
@@ -44,7 +44,7 @@ pub(crate) fn of(before: &Settings, after: &Settings) -> Option<String> {
         (*floor != after.floor, "floor"),
         (*sampling != after.sampling, "sampling"),
         (*output != after.output, "exposure and background"),
-        (*views != after.views, "kept views"),
+        (*kept != after.kept, "kept views and looks"),
         (*volume != after.volume, "corrections of the file"),
     ];
     let changed: Vec<&str> =

@@ -14,16 +14,18 @@ pub(crate) const OPEN_PATH: &str = "Open path…";
 pub(crate) const OPEN_BUILT_IN: &str = "Open built-in";
 pub(crate) const TAKE_CHOICE: &str = "Show this one";
 pub(crate) const CANCEL_OPENING: &str = "Cancel";
-pub(crate) const GO_ON: &str = "Go on where you left off";
-pub(crate) const SAVE_SETTINGS: &str = "Save settings…";
-pub(crate) const LOAD_SETTINGS: &str = "Load settings…";
+pub(crate) const GO_ON: &str = "Reopen last session";
+pub(crate) const SAVE_SETTINGS: &str = "Save session…";
+pub(crate) const LOAD_SETTINGS: &str = "Load session or settings…";
 pub(crate) const EXPORT: &str = "Export picture or turntable…";
 pub(crate) const COPY_PICTURE: &str = "Copy picture";
-pub(crate) const KEEP_LOOK: &str = "Keep this look for the next file";
+pub(crate) const KEEP_LOOK: &str = "Next file with this look";
 pub(crate) const QUIT: &str = "Quit";
 
 pub(crate) const UNDO: &str = "Undo";
 pub(crate) const REDO: &str = "Redo";
+pub(crate) const TOGGLE_HISTORY: &str = "History of steps…";
+pub(crate) const TOGGLE_MESSAGES: &str = "All messages…";
 pub(crate) const SHOW_PALETTE: &str = "Find a command…";
 
 pub(crate) const RESET_VIEW: &str = "Reset view";
@@ -35,6 +37,14 @@ pub(crate) const TURN_ROUND_WORDS: &str = "rotate 90° around spin object orient
 pub(crate) const TOGGLE_PROJECTION: &str = "Perspective or orthographic";
 pub(crate) const TOGGLE_FULL_SCREEN: &str = "Full screen";
 pub(crate) const TOGGLE_SIDE: &str = "Side panel";
+pub(crate) const TOGGLE_KEPT: &str = "Kept views and looks";
+pub(crate) const KEEP_VIEW: &str = "Keep this view";
+pub(crate) const KEEP_IN_STRIP: &str = "Keep this look";
+pub(crate) const GO_TO_KEPT: &str = "Go to what is kept";
+pub(crate) const EXPORT_KEPT: &str = "Contact sheet of what is kept…";
+pub(crate) const TOGGLE_TRANSFER: &str = "Transfer function editor";
+pub(crate) const PICTURE_ONLY: &str = "Picture only";
+pub(crate) const PICTURE_ONLY_WORDS: &str = "hide panels distraction free presentation zen maximise";
 pub(crate) const TOGGLE_HANDLES: &str = "Handles";
 pub(crate) const TOGGLE_OVERLAY: &str = "Marks over the picture";
 pub(crate) const TOGGLE_PROBE: &str = "Why is this dark? (probe)";
@@ -52,6 +62,8 @@ pub(crate) const USE_LIGHTS: &str = "Use lights";
 pub(crate) const USE_LOOK: &str = "Use look";
 pub(crate) const TRY_LOOKS: &str = "Try looks…";
 /// What else commands are found by.
+pub(crate) const GO_ON_WORDS: &str = "go on where you left off continue resume restore";
+pub(crate) const SAVE_WORDS: &str = "save settings";
 pub(crate) const EXPORT_WORDS: &str = "screenshot save picture image figure render turntable video movie";
 pub(crate) const TRANSFER_WORDS: &str = "load colormap colour map lut tf";
 pub(crate) const COMPARE_WORDS: &str = "before after split side by side difference";
@@ -128,12 +140,12 @@ pub(crate) fn use_colors(map: &str, reversed: bool) -> String {
 
 /// Keeping a view under a digit.
 pub(crate) fn store_view(slot: u8) -> String {
-    format!("Store view {slot}")
+    format!("Keep this view as {slot}")
 }
 
 /// Looking from a saved view again.
 pub(crate) fn recall_view(slot: u8) -> String {
-    format!("Recall view {slot}")
+    format!("Go to kept {slot}")
 }
 
 /// The keys that keep a view.

@@ -5,9 +5,9 @@ use std::path::Path;
 use std::time::Duration;
 
 /// The window that offers looks of runs that crashed.
-pub(crate) const ENDED_BADLY: &str = "Go on where you left off?";
+pub(crate) const ENDED_BADLY: &str = "Reopen the last session?";
 pub(crate) const ENDED_BADLY_WHY: &str = "Chiaroscuro was cut off. This is how it looked:";
-pub(crate) const GO_ON: &str = "Go on";
+pub(crate) const GO_ON: &str = "Reopen";
 pub(crate) const NOT_NOW: &str = "Not now";
 pub(crate) const NOT_NOW_TIP: &str = "It stays in File, Earlier looks";
 
@@ -44,7 +44,7 @@ pub(crate) fn earlier_look(source: &str, ago: Duration) -> String {
 }
 
 /// How long ago something was.
-fn since(ago: Duration) -> String {
+pub(crate) fn since(ago: Duration) -> String {
     let minutes = ago.as_secs() / 60;
     match minutes {
         0 => "just now".to_owned(),

@@ -12,12 +12,12 @@ pub(crate) const KEEP_LOOK_TIP: &str =
     "Lights, transfer function and shadows stay when another file is opened";
 
 pub(crate) const LOOK_FROM: &str = "Look from";
-pub(crate) const KEPT_VIEWS: &str = "Kept views";
+pub(crate) const KEPT: &str = "Kept";
 pub(crate) const PERSPECTIVE: &str = "Perspective";
 pub(crate) const ORTHOGRAPHIC: &str = "Orthographic";
 
 /// How long a preview may take.
-pub(crate) const WHILE_MOVING: &str = "While something moves";
+pub(crate) const WHILE_MOVING: &str = "Quality while moving";
 pub(crate) const AUTOMATIC: &str = "Automatic";
 pub(crate) const SMOOTH: &str = "Smooth (16 ms)";
 pub(crate) const BALANCED: &str = "Balanced (33 ms)";
@@ -27,7 +27,7 @@ pub(crate) const SHARPEST: &str = "Sharpest (200 ms)";
 /// The colours of the window.
 pub(crate) const DARK: &str = "Dark";
 pub(crate) const BRIGHT: &str = "Light";
-pub(crate) const AS_SYSTEM: &str = "As the system";
+pub(crate) const AS_SYSTEM: &str = "Same as system";
 
 pub(crate) const USE_RIG: &str = "Use other lights";
 

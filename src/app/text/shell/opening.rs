@@ -16,11 +16,11 @@ pub(crate) const UPLOADING: &str = "uploading";
 pub(crate) const FIRST_LOOK: &str = "finding a first look";
 
 /// What did not work; why is said with the details.
-pub(crate) const NOT_OPENED: &str = "cannot open";
-pub(crate) const HEADER_NOT_WRITTEN: &str = "the header was not written";
-pub(crate) const SETTINGS_NOT_LOADED: &str = "the settings were not loaded";
-pub(crate) const SETTINGS_NOT_SAVED: &str = "the settings were not saved";
-pub(crate) const SESSION_NOT_LOADED: &str = "the session was not loaded";
+pub(crate) const NOT_OPENED: &str = "Cannot open";
+pub(crate) const HEADER_NOT_WRITTEN: &str = "The header was not written";
+pub(crate) const SETTINGS_NOT_LOADED: &str = "The settings were not loaded";
+pub(crate) const SETTINGS_NOT_SAVED: &str = "The session was not saved";
+pub(crate) const SESSION_NOT_LOADED: &str = "The session was not loaded";
 
 /// Settings that were loaded all the same.
 pub(crate) const OF_ANOTHER_VOLUME: &str = "The settings were made for another volume: Open… opens that one";
@@ -60,7 +60,7 @@ pub(crate) fn empty(source: &Path) -> String {
 
 /// A volume that was read and is beyond the graphics card.
 pub(crate) fn not_shown(source: &Path) -> String {
-    format!("cannot show {}", source.display())
+    format!("Cannot show {}", source.display())
 }
 
 /// The graphics adapter cannot hold all voxels of a volume.

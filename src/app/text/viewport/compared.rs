@@ -33,9 +33,9 @@ pub(crate) fn variant(variant: &Variant) -> &'static str {
     match variant {
         Variant::Current => "This look",
         Variant::Off => "No shadows",
-        Variant::Splat => "Splat",
-        Variant::Raycast => "Ray",
-        Variant::Direct => "Direct",
+        Variant::Splat => "Splatting",
+        Variant::Raycast => "Per voxel",
+        Variant::Direct => "Per sample",
         Variant::Scatter => "Scattered",
         Variant::FirstTouch => "First touch",
         Variant::Look(_) => "Kept look",

@@ -2,6 +2,5 @@
 
 pub(in crate::app) mod compared;
 pub(in crate::app) mod cut_handles;
-pub(in crate::app) mod overlay;
 pub(in crate::app) mod picture;
 pub(in crate::app) mod probe;

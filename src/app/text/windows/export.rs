@@ -4,7 +4,15 @@ use std::fmt::Display;
 
 use crate::app::text::{Named, named};
 
-pub(crate) const TITLE: &str = "Export picture";
+pub(crate) const TITLE: &str = "Export picture or turntable";
+
+/// What is written over a picture.
+pub(crate) const MARKS: &str = "Marks";
+pub(crate) const SCALE_BAR: Named = named("Scale bar", "How long things are, at the middle of the view");
+pub(crate) const LETTERS: Named =
+    named("Orientation letters", "Which side of a body is where, if the file says it");
+pub(crate) const LEGEND: Named = named("Legend", "Which colour stands for which value or label");
+pub(crate) const NO_BYTES: &str = "the picture has no bytes";
 pub(crate) const EXPORT: &str = "Export";
 
 /// What is made.
@@ -22,7 +30,7 @@ pub(crate) const EXR: Named =
     named("EXR", "Light before the tone map, linear, for programs that grade and composite");
 
 /// Files for a turn.
-pub(crate) const APNG: Named = named("PNG that moves", "Every colour, and transparency; browsers show it");
+pub(crate) const APNG: Named = named("Animated PNG", "Every colour, and transparency; browsers show it");
 pub(crate) const GIF: Named = named("GIF", "256 colours; everything shows it");
 pub(crate) const MP4: Named = named("MP4", "A video for slides; needs ffmpeg on this computer");
 pub(crate) const FOLDER: Named = named("One file per picture", "A folder of PNG files, for video programs");

@@ -20,14 +20,14 @@ pub(crate) const OPEN_FOLDER: Question =
     Question { title: "Open a folder of slices", hint: "a folder of DICOM files or pictures", verb: "Open" };
 pub(crate) const VOLUME_OF_LOOK: Question = Question { title: "Open the volume of the look", ..OPEN_VOLUME };
 pub(crate) const LOAD_SETTINGS: Question = Question {
-    title: "Load settings",
+    title: "Load session or settings",
     hint: "a .json file, or a .png or .exr picture that was exported",
     verb: "Load",
 };
 pub(crate) const COMPARE_SETTINGS: Question =
     Question { title: "Compare with settings", hint: LOAD_SETTINGS.hint, verb: "Compare" };
 pub(crate) const SAVE_SETTINGS: Question =
-    Question { title: "Save settings", hint: "a .json file", verb: "Save" };
+    Question { title: "Save session", hint: "a .json file", verb: "Save" };
 pub(crate) const SURROUNDINGS: Question = Question {
     title: "Light by surroundings",
     hint: "a panorama of all directions: .hdr, .exr, .png, .jpg",
@@ -51,6 +51,8 @@ pub(crate) const EXPORT_PICTURE: Question = Question {
     hint: ".png or .exr for a picture; .png, .gif, .mp4 or a folder for a turn",
     verb: "Use",
 };
+pub(crate) const EXPORT_KEPT: Question =
+    Question { title: "Contact sheet of what is kept", hint: "a .png file", verb: "Export" };
 pub(crate) const EXPORT_LIGHT: Question = Question {
     title: "Export light volume",
     hint: "a .nrrd file for the volume, a .png file for the slice",

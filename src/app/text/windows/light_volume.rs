@@ -12,7 +12,7 @@ pub(crate) const SLICE: &str = "Slice";
 /// In place of a light volume that is being filled, and over one that is no longer that of the look.
 pub(crate) const FILLING: &str = "filling…";
 pub(crate) const NONE: &str =
-    "No light volume: shadows must be on, splatted or by rays, and a light must cast them";
+    "No light volume: shadows must be on, splatting or per voxel, and a light must cast them";
 
 /// The ends of the scale of colours.
 pub(crate) const DARK: &str = "dark";

@@ -18,7 +18,7 @@ use crate::app::text;
 use crate::app::worker::task::Work;
 use crate::model::Settings;
 
-pub(crate) use self::sheet::Sheet;
+pub(in crate::app) use self::sheet::{SIZE as SMALL, Sheet, small_picture};
 
 /// Points that the window has above the pictures and below them: its default place, its title, the row of buttons, and
 /// margins.

@@ -16,7 +16,7 @@ use crate::model::{
 
 /// Pixels of a picture: 4:3, as first looks are framed, and four of them with what lies between are no wider than a
 /// window of 1280 points has beside its panel.
-pub(super) const SIZE: [u32; 2] = [176, 132];
+pub(in crate::app) const SIZE: [u32; 2] = [176, 132];
 /// Places for the selected light, as hours of a clock face around the line of sight.
 const HOURS: [u32; 6] = [10, 12, 2, 4, 6, 8];
 /// Degrees from the line of sight to those places: nearer to it few shadows are seen, and at 90° half of what is seen has
@@ -81,11 +81,20 @@ impl Sheet {
         };
         let count = candidates.len();
         for candidate in candidates.into_iter().take_while(|_| is_wanted()) {
-            let picture = picture(&mut worker, subject, &quick(&candidate.settings))?;
+            let picture = small_picture(&mut worker, subject, &candidate.settings)?;
             hand_on(count, (candidate, picture));
         }
         Ok(())
     }
+}
+
+/// A picture of a look, made quickly.
+pub(in crate::app) fn small_picture(
+    worker: &mut Worker,
+    subject: &Subject,
+    settings: &Settings,
+) -> Result<ColorImage, String> {
+    picture(worker, subject, &quick(settings))
 }
 
 /// A picture of a look.

@@ -9,7 +9,7 @@ use super::{Export, Kind, Request};
 use crate::app::common::frame;
 use crate::app::text::{self, Named};
 use crate::export::{AnimationFormat, PictureFormat, frame_names};
-use crate::model::{Depth, MAX_EDGE, MAX_SAMPLES};
+use crate::model::{Depth, MAX_EDGE, MAX_SAMPLES, Marks};
 
 const KINDS: [(Kind, Named); 3] = [
     (Kind::Still, text::export::STILL),
@@ -64,6 +64,17 @@ impl Export {
             if response.on_disabled_hover_text(text::export::NOT_TRANSPARENT_TIP).changed() {
                 self.shot.transparent = left_out;
             }
+            ui.horizontal(|ui| {
+                ui.label(text::export::MARKS);
+                let Marks { scale_bar, letters, legend } = &mut self.shot.marks;
+                for (on, Named { name, tip }) in [
+                    (scale_bar, text::export::SCALE_BAR),
+                    (letters, text::export::LETTERS),
+                    (legend, text::export::LEGEND),
+                ] {
+                    ui.checkbox(on, name).on_hover_text(tip);
+                }
+            });
             ui.horizontal(|ui| {
                 let label = ui.label(text::export::FILE);
                 let field = egui::TextEdit::singleline(&mut self.path).desired_width(280.0);

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use eframe::egui;
 
 use self::worker::Progress;
-pub(in crate::app) use self::worker::{Exported, Subject, Worker};
+pub(in crate::app) use self::worker::{Exported, Subject, Worker, shown_of};
 use crate::app::text;
 use crate::app::worker::task::Work;
 use crate::export::{AnimationFormat, AnimationSpec};
@@ -147,7 +147,8 @@ impl Export {
         };
         let transparent = shot.transparent && self.animation() != AnimationFormat::Mp4;
         let reel = AnimationSpec { size: shot.size, frames: self.frames, rate: self.rate, transparent };
-        self.run(ctx, move || worker::turn(&subject, light, &reel, path, &progress))
+        let marks = shot.marks;
+        self.run(ctx, move || worker::turn(&subject, light, (&reel, marks), path, &progress))
     }
 
     /// Starts to render for the clipboard, as large as the window's picture.
@@ -157,9 +158,21 @@ impl Export {
         size: [u32; 2],
         ctx: &egui::Context,
     ) -> Result<(), String> {
-        let shot = ImageSpec { transparent: self.shot.transparent, ..ImageSpec::new(size) };
+        let Self { shot: ImageSpec { transparent, marks, .. }, .. } = *self;
+        let shot = ImageSpec { transparent, marks, ..ImageSpec::new(size) };
         self.progress = Arc::default();
         self.run(ctx, move || worker::copy(&subject, &shot))
+    }
+
+    /// Starts to render all views and looks that are kept into one picture.
+    pub(crate) fn sheet(&mut self, subject: Subject, path: &Path, ctx: &egui::Context) -> Result<(), String> {
+        if self.is_busy() {
+            return Err(text::messages::EXPORT_RUNS.to_owned());
+        }
+        let path = path.to_owned();
+        self.progress = Arc::default();
+        let progress = Arc::clone(&self.progress);
+        self.run(ctx, move || worker::sheet(&subject, path, &progress))
     }
 
     fn run(

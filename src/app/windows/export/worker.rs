@@ -6,11 +6,18 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use eframe::egui;
 
+use crate::app::text;
 use crate::data::{Dataset, Volume};
-use crate::export::{Animation, AnimationFormat, AnimationSpec, ExportError, write_picture};
+use crate::export::{
+    Animation, AnimationFormat, AnimationSpec, ExportError, Rows, Sheet, export_png, marks, write_picture,
+};
 use crate::fault::{Place, may_panic};
 use crate::gpu::{Context, GpuError, RenderOptions, Renderer, ShaderLibrary, SmallLook};
-use crate::model::{ImageSpec, PictureRecord, Record, Settings, VolumeRecord};
+use crate::model::{ImageSpec, KeptThing, Marks, PictureRecord, Record, Settings, VolumeRecord};
+
+/// Pixels of a picture on a sheet of what is kept: 4:3, as first looks are framed, and four beside each other fill a page
+/// at 300 dots per inch.
+const TILE: [u32; 2] = [640, 480];
 
 /// What is to be exported.
 #[derive(Debug, Clone)]
@@ -112,7 +119,12 @@ impl Worker {
     ) -> Result<Vec<u8>, String> {
         let options = RenderOptions::of_shot(shot);
         let shown = self.renderer.render_shown(&subject.dataset, settings, shot.size, &options);
-        shown.map_err(|err| err.to_string())
+        let mut shown = Rows::Bytes(shown.map_err(|err| err.to_string())?);
+        marks(shot, settings, subject.dataset.volume()).lay_over(shot, 0, &mut shown);
+        match shown {
+            Rows::Bytes(shown) => Ok(shown),
+            Rows::Floats(_) => Err(text::export::NO_BYTES.to_owned()),
+        }
     }
 
     /// The pipelines of the worker's device.
@@ -156,10 +168,16 @@ pub(crate) fn still(
     let record = worker.record(subject, &subject.settings, shot, path.parent());
     let Subject { dataset, settings, .. } = subject;
     let mut bands = worker.renderer.bands(dataset, settings, shot);
+    let (layer, mut first) = (marks(shot, settings, dataset.volume()), 0);
     let mut rows = || {
         let (done, total) = bands.progress();
         progress.set(done as u32, total as u32)?;
-        Ok(bands.next_rows()?)
+        let mut rows = bands.next_rows()?;
+        if let Some(rows) = &mut rows {
+            layer.lay_over(shot, first, rows);
+            first += rows.count(shot);
+        }
+        Ok(rows)
     };
     write_picture(&path, shot, Some(&record), &mut rows)
         .map_or_else(Ended::result, |()| Ok(Exported::File(path)))
@@ -169,13 +187,13 @@ pub(crate) fn still(
 pub(crate) fn turn(
     subject: &Subject,
     light: Option<usize>,
-    reel: &AnimationSpec,
+    (reel, marks): (&AnimationSpec, Marks),
     path: PathBuf,
     progress: &Progress,
 ) -> Result<Exported, String> {
     let mut worker = Worker::new(subject)?;
     let folder = AnimationFormat::record_folder(&path);
-    let shot = ImageSpec { transparent: reel.transparent, ..ImageSpec::new(reel.size) };
+    let shot = ImageSpec { transparent: reel.transparent, marks, ..ImageSpec::new(reel.size) };
     let mut write = || {
         let mut file = Animation::create(&path, reel)?;
         for frame in 0..reel.frames {
@@ -188,6 +206,39 @@ pub(crate) fn turn(
         Ok(())
     };
     write().map_or_else(Ended::result, |()| Ok(Exported::File(path)))
+}
+
+/// Renders all views and looks that are kept, and writes them side by side into one picture.
+pub(crate) fn sheet(subject: &Subject, path: PathBuf, progress: &Progress) -> Result<Exported, String> {
+    let mut worker = Worker::new(subject)?;
+    let shot = ImageSpec::new(TILE);
+    let kept = &subject.settings.kept;
+    let mut sheet = Sheet::new(kept.len() as u32, TILE);
+    let mut write = || -> Result<(), Ended> {
+        for (at, kept) in (0..).zip(kept) {
+            progress.set(at, subject.settings.kept.len() as u32)?;
+            let settings = shown_of(&kept.what, &subject.settings);
+            let shown = worker.render(subject, &settings, &shot).map_err(Ended::Failed)?;
+            sheet.add(&kept.name, &shown);
+        }
+        Ok(())
+    };
+    if let Err(ended) = write() {
+        return ended.result();
+    }
+    let (size, shown) = sheet.finish();
+    // Whoever opens it has the look with all that is kept.
+    let record = worker.record(subject, &subject.settings, &ImageSpec::new(size), path.parent());
+    export_png(size, &shown, false, Some(&record), &path).map_err(|err| err.to_string())?;
+    Ok(Exported::File(path))
+}
+
+/// Settings that show something that is kept: views in the look that there is, looks as they were seen.
+pub(in crate::app) fn shown_of(what: &KeptThing, settings: &Settings) -> Settings {
+    match what {
+        KeptThing::View(camera) => Settings { camera: camera.clone(), ..settings.clone() },
+        KeptThing::Look(look) => Settings { volume: settings.volume, ..look.settings().clone() },
+    }
 }
 
 /// Renders for the clipboard.

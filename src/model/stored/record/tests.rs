@@ -1,13 +1,15 @@
 //! What records keep, and what they refuse.
 
 use super::*;
-use crate::model::{ControlPoint, Depth};
+use crate::model::{ControlPoint, Depth, Kept};
 
 #[test]
 fn records_are_read_as_they_were_written() {
     let mut settings = Settings::default();
     settings.shadows.gain = 1.25;
-    settings.views.insert(3, settings.camera.clone());
+    assert!(settings.keep_view_under(3, "front"));
+    let bone = Kept::look("bone", &settings);
+    assert!(settings.keep(bone));
     let volume = VolumeRecord::new("builtin:chair", 0x1234, None);
     let picture = PictureRecord {
         shot: ImageSpec {

@@ -1,18 +1,20 @@
-//! What went wrong, or went well, in the status bar; details on click, never in the way.
-//!
-//! The bar is always there, so that a message does not change the size of the picture.
+//! What went wrong, or went well: a notice over the picture, with details on click, and a list of all that was said.
 
-use eframe::egui::{self, RichText};
+mod list;
+mod notice;
 
-use crate::app::common::frame;
-use crate::app::common::theme;
-use crate::app::text;
+use std::collections::VecDeque;
+use std::time::Instant;
+
 use crate::data::{plain, without_controls};
 
 /// How long a note stays; errors stay until they are dismissed.
-const NOTE_S: f64 = 5.0;
+const NOTE_S: f64 = 6.0;
 
-/// Characters of a message in the bar: more than the widest screen shows.
+/// Messages that are remembered: those of a long day.
+const MOST: usize = 200;
+
+/// Characters of a message: more than the widest screen shows.
 const LONGEST_SHORT: usize = 500;
 
 /// Characters of the details: two long paths, and what is said of them.
@@ -47,6 +49,10 @@ pub(crate) struct Messages {
     errors: Vec<String>,
     /// The latest since then, also when it has gone.
     note: Option<String>,
+    /// All that was said, the latest last, and when.
+    past: VecDeque<(Instant, Message)>,
+    /// The list of them is shown.
+    pub lists: bool,
 }
 
 impl Messages {
@@ -71,12 +77,18 @@ impl Messages {
         let details = without_controls(&details).chars().take(LONGEST_DETAILS).collect();
         self.expanded = false;
         self.until_s = None;
-        self.current = Some(Message { short, details, is_error });
+        let message = Message { short, details, is_error };
+        if self.past.len() == MOST {
+            self.past.pop_front();
+        }
+        self.past.push_back((Instant::now(), message.clone()));
+        self.current = Some(message);
     }
 
     /// A new volume is there: what was said before is over.
     pub(crate) fn clear(&mut self) {
-        *self = Self::default();
+        let (past, lists) = (std::mem::take(&mut self.past), self.lists);
+        *self = Self { past, lists, ..Self::default() };
     }
 
     /// What is being said is over; what went wrong stays known.
@@ -94,41 +106,9 @@ impl Messages {
         self.note.as_deref()
     }
 
-    /// Shows the message in a row from the right to the left, if there is anything to say; whether there is.
-    pub(crate) fn ui(&mut self, ui: &mut egui::Ui) -> bool {
-        let Some(message) = &self.current else { return false };
-        let now_s = ui.input(|input| input.time);
-        let mut over = false;
-        if !message.is_error {
-            let until_s = *self.until_s.get_or_insert(now_s + NOTE_S);
-            over = now_s >= until_s;
-            ui.request_repaint_after(std::time::Duration::from_secs_f64((until_s - now_s).max(0.0)));
-        }
-        let color = if message.is_error { ui.visuals().error_fg_color } else { theme::accent(ui.visuals()) };
-        over |= ui.small_button(text::messages::DISMISS).clicked();
-        if !message.details.is_empty() && ui.small_button(text::messages::DETAILS).clicked() {
-            self.expanded ^= true;
-        }
-        // What is left of the row is the message's, which is cut rather than its buttons.
-        ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-            ui.separator();
-            let words = message.words();
-            let label = egui::Label::new(RichText::new(&words).color(color)).truncate();
-            ui.add(label).on_hover_text(&words);
-        });
-        if self.expanded {
-            let above_bar = egui::vec2(8.0, -36.0);
-            let shown = egui::Window::new(text::messages::WHAT_HAPPENED)
-                .open(&mut self.expanded)
-                .collapsible(false)
-                .anchor(egui::Align2::LEFT_BOTTOM, above_bar)
-                .show(ui.ctx(), |ui| ui.label(&message.details));
-            self.expanded &= !frame::is_left(ui.ctx(), shown.as_ref().map(|shown| &shown.response));
-        }
-        if over {
-            self.current = None;
-        }
-        true
+    /// How many messages there have been.
+    pub(crate) fn count(&self) -> usize {
+        self.past.len()
     }
 }
 

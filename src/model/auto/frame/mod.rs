@@ -1,7 +1,10 @@
 //! Where the camera stands, so that a volume's object fills the picture.
 
+mod outline;
+
 use glam::{DVec2, DVec3};
 
+pub use self::outline::Outline;
 use super::object::Object;
 use crate::data::Volume;
 use crate::model::{Camera, FRAME_ASPECT, Fit, Settings};
@@ -51,15 +54,18 @@ pub(super) fn lay_floor(settings: &mut Settings, volume: &Volume, object: &Objec
 /// Points the camera at the object, near enough that it fills the frame, which lies within pictures of any shape. Puts
 /// the floor under it.
 pub(super) fn frame(settings: &mut Settings, volume: &Volume, object: &Object) {
-    settings.camera.fit = Fit::Frame;
+    frame_points(&mut settings.camera, &corners(volume, object));
+    lay_floor(settings, volume, object);
+}
+
+/// Points a camera at some points of the scene from where it looks, near enough that they fill the frame.
+fn frame_points(camera: &mut Camera, corners: &[DVec3]) {
+    camera.fit = Fit::Frame;
     // From where first looks begin: the same view is framed in the same way, whatever it was framed as before.
-    settings.camera.distance = Camera::default().distance;
-    let corners = corners(volume, object);
+    camera.distance = Camera::default().distance;
     if corners.is_empty() {
         return;
     }
-    lay_floor(settings, volume, object);
-    let camera = &mut settings.camera;
     let view = camera.scene_from_view();
     let half_angle_tan = camera.half_height_at_target(FRAME_ASPECT) / camera.distance;
     let low = corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);

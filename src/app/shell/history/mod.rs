@@ -1,8 +1,11 @@
 //! Undo and redo of settings.
 
+mod list;
+
 use eframe::egui;
 use eframe::egui::util::undoer::{self, Undoer};
 
+pub(crate) use self::list::Listed;
 use crate::app::{App, text};
 use crate::data::KindName;
 use crate::model::Settings;
@@ -170,6 +173,7 @@ impl App {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::Kept;
 
     /// A few numbers that look random and are always the same.
     fn numbers(seed: u64) -> impl Iterator<Item = u64> {
@@ -183,7 +187,7 @@ mod tests {
     /// Edits one thing or another.
     fn edit(settings: &mut Settings, choice: u64, amount: u64) {
         let share = (amount % 1000) as f64 / 1000.0;
-        match choice % 8 {
+        match choice % 11 {
             0 => settings.camera.azimuth_deg = 360.0 * share,
             1 => settings.lights[0].position[0] = 4.0 * share + 1.0,
             2 => settings.shadows.strength = share,
@@ -194,7 +198,13 @@ mod tests {
                 [share as f32; 3],
                 share,
             )),
-            6 => drop(settings.views.insert((amount % 9) as u8 + 1, settings.camera.clone())),
+            6 => _ = settings.keep_view_under((amount % 9) as u8 + 1, "view"),
+            7 => _ = settings.keep(Kept::look("look", &settings.clone())),
+            8 if !settings.kept.is_empty() => {
+                let at = amount as usize % settings.kept.len();
+                settings.kept.rotate_left(at);
+            }
+            9 => drop(settings.kept.pop()),
             _ => settings.lighting.scale = share + 0.5,
         }
     }
@@ -295,6 +305,31 @@ mod tests {
             gone(&mut history, &mut settings, true);
             assert_eq!(settings, start);
         }
+    }
+
+    #[test]
+    fn steps_are_listed_with_what_they_changed() {
+        let (mut history, mut settings) = (History::default(), Settings::default());
+        let mut time = 0.0;
+        let mut rest = |history: &mut History, settings: &Settings| {
+            for _ in 0..3 {
+                history.undoer.feed_state(time, &step(settings));
+                time += 1.0;
+            }
+        };
+        rest(&mut history, &settings);
+        settings.floor.on = true;
+        rest(&mut history, &settings);
+        settings.camera.azimuth_deg = 77.0;
+        rest(&mut history, &settings);
+        let all = history.steps(&step(&settings));
+        assert_eq!(
+            (all.names.as_slice(), all.taken),
+            (["floor".to_owned(), "view".to_owned()].as_slice(), 2)
+        );
+        gone(&mut history, &mut settings, true);
+        let before = history.steps(&step(&settings));
+        assert_eq!((before.names, before.taken), (all.names, 1));
     }
 
     #[test]

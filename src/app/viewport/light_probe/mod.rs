@@ -1,7 +1,13 @@
-//! "Why is this dark?": what is under the pointer, and what of every light gets there.
+//! "Why is this dark?": what is under the pointer, and what of every light gets there; and how far two places are apart.
+
+mod cause;
+mod tag;
 
 use eframe::egui::{self, Pos2, Rect, Shape, Stroke, Ui, vec2};
 use glam::DVec3;
+
+use self::cause::Cause;
+use self::tag::Tag;
 
 use crate::app::common::theme;
 use crate::app::common::volume_facts::decimals;
@@ -10,6 +16,13 @@ use crate::data::Volume;
 use crate::model::{Camera, Light, LightKind, Settings};
 use crate::plan::{Arrival, Probe, probe};
 
+/// A place that was clicked.
+#[derive(Debug, Clone, Copy)]
+struct Pin {
+    /// In scene space.
+    point: DVec3,
+}
+
 /// State of the probe between frames.
 #[derive(Debug, Default)]
 pub(crate) struct LightProbe {
@@ -17,44 +30,86 @@ pub(crate) struct LightProbe {
     pub on: bool,
     /// The last answer, and the question.
     last: Option<(Pos2, Settings, Option<Probe>)>,
+    /// Places that were clicked, the latest last: at most two.
+    pins: Vec<Pin>,
+}
+
+/// What the probe asks, and how the user has answered.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Pointing {
+    /// Where the pointer is, if nothing is dragged.
+    pub pointer: Option<Pos2>,
+    /// The picture was clicked.
+    pub clicked: bool,
 }
 
 impl LightProbe {
-    /// Asks what is under the pointer and paints the answer.
+    /// Asks what is under the pointer, or at the place that was clicked, and shows the answer; does what helps, if the user
+    /// wants that.
     pub(crate) fn show(
         &mut self,
         ui: &Ui,
         picture: Rect,
-        settings: &Settings,
+        settings: &mut Settings,
         volume: &Volume,
-        pointer: Option<Pos2>,
+        Pointing { pointer, clicked }: Pointing,
     ) {
-        let Some(pointer) = pointer.filter(|_| self.on) else {
+        if !self.on {
+            (self.last, self.pins) = (None, Vec::new());
+            return;
+        }
+        if !self.pins.is_empty() && tag::is_left(ui) {
+            self.pins.clear();
+        }
+        if let Some(at) = pointer.filter(|_| clicked) {
+            match seen_at(volume, settings, picture, at) {
+                Some(found) => {
+                    if self.pins.len() == 2 {
+                        self.pins.remove(0);
+                    }
+                    self.pins.push(Pin { point: found.point });
+                }
+                // Beside the object the place is let go.
+                None => self.pins.clear(),
+            }
+        }
+        let pinned = self.pins.last().and_then(|pin| place(&settings.camera, picture, pin.point));
+        let Some(at) = pinned.or(pointer) else {
             self.last = None;
             return;
         };
-        if self.last.as_ref().is_none_or(|(at, of, _)| *at != pointer || of != settings) {
-            let found = seen_at(volume, settings, picture, pointer);
-            self.last = Some((pointer, settings.clone(), found));
+        if self.last.as_ref().is_none_or(|(of, look, _)| *of != at || look != settings) {
+            let found = seen_at(volume, settings, picture, at);
+            self.last = Some((at, settings.clone(), found));
         }
         let found = self.last.as_ref().and_then(|(_, _, found)| found.as_ref());
         let painter = ui.painter_at(picture);
         if let Some(found) = found {
             rays(&painter, picture, settings, found);
         }
-        let words =
-            found.map_or_else(|| text::probe::NOTHING.to_owned(), |found| answer(settings, volume, found));
-        // In a corner of its own, so that it does not hide what it speaks of.
-        let galley = painter.layout(
-            words,
-            egui::TextStyle::Small.resolve(ui.style()),
-            theme::EYE_CURVE,
-            (picture.width() - 40.0).max(60.0),
-        );
-        let size = galley.size() + vec2(16.0, 12.0);
-        let corner = Rect::from_min_size(picture.right_bottom() - size - vec2(10.0, 10.0), size);
-        painter.rect_filled(corner, 4.0, theme::OUTLINE.gamma_multiply(0.85));
-        painter.galley(corner.min + vec2(8.0, 6.0), galley, theme::EYE_CURVE);
+        let (mm_per_unit, unit) = (volume.scene().mm_per_unit, unit_of(volume));
+        let distance = match &self.pins[..] {
+            [from, to] => {
+                let length = text::probe::length(from.point.distance(to.point) * mm_per_unit, unit);
+                measure(&painter, picture, &settings.camera, [from.point, to.point], &length);
+                Some(text::probe::apart(&length))
+            }
+            _ => None,
+        };
+        let cause = found.map(|found| Cause::of(settings, found));
+        let shown = Tag {
+            cause,
+            sentence: cause.map_or_else(
+                || text::probe::NOTHING.to_owned(),
+                |cause| cause.words(settings, mm_per_unit, unit),
+            ),
+            facts: found.map_or_else(String::new, |found| answer(settings, volume, found)),
+            distance,
+            is_pinned: pinned.is_some(),
+        };
+        if let Some(cure) = tag::show(ui, picture, at, &shown) {
+            cure.apply(settings);
+        }
     }
 
     /// The value under the pointer, for other views to mark.
@@ -62,6 +117,26 @@ impl LightProbe {
         let (_, _, found) = self.last.as_ref().filter(|_| self.on)?;
         Some(found.as_ref()?.value)
     }
+}
+
+/// The unit of lengths in a volume.
+fn unit_of(volume: &Volume) -> LengthUnit {
+    LengthUnit::showing(volume.scene().mm_per_unit, volume.has_unknown_scale())
+}
+
+/// A line between two places, and how long it is.
+fn measure(painter: &egui::Painter, picture: Rect, camera: &Camera, ends: [DVec3; 2], length: &str) {
+    let [Some(from), Some(to)] = ends.map(|end| place(camera, picture, end)) else { return };
+    for (width, ink) in [(4.0, theme::OUTLINE), (1.5, theme::EYE_CURVE)] {
+        painter.line_segment([from, to], Stroke::new(width, ink));
+        painter.circle(from, 3.0, ink, Stroke::NONE);
+    }
+    let middle = from + (to - from) / 2.0;
+    let font = egui::FontId::proportional(13.0);
+    let galley = painter.layout_no_wrap(length.to_owned(), font, theme::EYE_CURVE);
+    let ground = Rect::from_center_size(middle, galley.size() + vec2(10.0, 4.0));
+    painter.rect_filled(ground, 4.0, theme::OUTLINE.gamma_multiply(0.85));
+    painter.galley(ground.min + vec2(5.0, 2.0), galley, theme::EYE_CURVE);
 }
 
 /// What is seen at a point of the window.
@@ -78,7 +153,7 @@ pub(crate) fn seen_at(volume: &Volume, settings: &Settings, picture: Rect, at: P
 
 /// The answer in words and numbers.
 fn answer(settings: &Settings, volume: &Volume, found: &Probe) -> String {
-    let unit = LengthUnit::showing(volume.scene().mm_per_unit, volume.has_unknown_scale());
+    let unit = unit_of(volume);
     let place = text::probe::place(found.index.to_array(), found.world_mm.to_array(), unit);
     let mut words = if settings.labels.is_empty() || volume.labels().is_none() {
         text::probe::found(found.value, decimals(volume.table_range()), found.opacity, &place)
@@ -102,7 +177,7 @@ fn answer(settings: &Settings, volume: &Volume, found: &Probe) -> String {
 
 /// Why a light lights a point, or does not.
 fn reason(light: &Light, arrival: &Arrival) -> String {
-    let Arrival { transmittance, hood, facing } = *arrival;
+    let Arrival { transmittance, hood, facing, blocked: _ } = *arrival;
     if !light.on {
         return text::probe::OFF.to_owned();
     }
@@ -135,6 +210,20 @@ fn rays(painter: &egui::Painter, picture: Rect, settings: &Settings, found: &Pro
             LightKind::Perspective => DVec3::from(world.position),
         };
         let Some(to) = place(camera, picture, to) else { continue };
+        // Where the light is lost.
+        if let Some([near, far]) = arrival.blocked {
+            let towards = match light.kind {
+                LightKind::Parallel => world.direction(),
+                LightKind::Perspective => (DVec3::from(world.position) - found.point).normalize_or(DVec3::Z),
+            };
+            let [Some(near), Some(far)] =
+                [near, far].map(|distance| place(camera, picture, found.point + towards * distance))
+            else {
+                continue;
+            };
+            painter.line_segment([near, far], Stroke::new(7.0, theme::OUTLINE.gamma_multiply(0.8)));
+            painter.line_segment([near, far], Stroke::new(4.0, theme::BLOCKED));
+        }
         let share = (arrival.transmittance * arrival.hood) as f32;
         let ink = theme::color(light.color);
         if share > 0.02 {
@@ -163,11 +252,11 @@ mod tests {
 
     #[test]
     fn every_darkness_has_its_reason() {
-        let lit = Arrival { transmittance: 0.37, hood: 1.0, facing: Some(0.5) };
+        let lit = Arrival { transmittance: 0.37, hood: 1.0, facing: Some(0.5), blocked: None };
         let key = Light::default();
         assert_eq!(reason(&key, &lit), "37 % arrives, at 30° to the surface");
         assert_eq!(reason(&Light { on: false, ..key.clone() }, &lit), "off");
-        assert_eq!(reason(&key, &Arrival { hood: 0.0, ..lit }), "outside its hood");
+        assert_eq!(reason(&key, &Arrival { hood: 0.0, ..lit }), "outside its spotlight cone");
         assert!(reason(&key, &Arrival { facing: Some(-0.2), ..lit }).contains("faces away"));
         assert!(reason(&key, &Arrival { transmittance: 1e-4, ..lit }).contains("in its way"));
         let fill = Light { casts_shadows: false, ..key };

@@ -1,0 +1,139 @@
+//! Views and looks that are kept: a strip of small pictures below the picture, and what is done with them.
+
+mod strip;
+mod thumbnails;
+
+use eframe::egui;
+
+pub(in crate::app) use self::strip::Strip;
+use super::App;
+use super::common::commands::Command;
+use crate::app::text;
+use crate::model::{Camera, Kept, KeptThing, ObjectTurn, Settings, Variant};
+
+/// The first name of its kind that is free.
+fn free_name(settings: &Settings, name: impl Fn(usize) -> String) -> String {
+    let is_taken = |wanted: &str| settings.kept.iter().any(|kept| kept.name == wanted);
+    (1..).map(name).find(|name| !is_taken(name)).unwrap_or_default()
+}
+
+impl App {
+    /// Keeps the view that is shown.
+    pub(in crate::app) fn keep_view(&mut self) {
+        let name = free_name(&self.settings, text::kept::view_name);
+        self.keep_in_strip(Kept::view(name, &self.settings.camera));
+    }
+
+    /// Keeps the look that is shown.
+    pub(in crate::app) fn keep_look_in_strip(&mut self) {
+        let name = free_name(&self.settings, text::kept::look_name);
+        self.keep_in_strip(Kept::look(name, &self.settings));
+    }
+
+    fn keep_in_strip(&mut self, kept: Kept) {
+        let note = text::kept::kept(&kept.name);
+        self.has_kept(self.settings.clone().keep(kept.clone()), note);
+        self.settings.keep(kept);
+    }
+
+    /// Keeps the view that is shown under a digit.
+    pub(in crate::app) fn keep_view_under(&mut self, digit: u8) {
+        let name = free_name(&self.settings, |number| {
+            // By its digit, if that is free.
+            text::kept::view_name(if number == 1 { digit.into() } else { number })
+        });
+        let has_room = self.settings.keep_view_under(digit, name);
+        self.has_kept(has_room, text::kept::view_kept(digit));
+    }
+
+    fn has_kept(&mut self, has_room: bool, note: String) {
+        if has_room {
+            self.layout.kept = true;
+            self.messages.note(note);
+        } else {
+            self.messages.error(text::kept::NO_ROOM, String::new());
+        }
+    }
+
+    /// Goes to what is kept under a digit.
+    pub(in crate::app) fn go_to_digit(&mut self, digit: u8, ctx: &egui::Context) {
+        match self.settings.kept.iter().position(|kept| kept.digit == Some(digit)) {
+            Some(at) => self.go_to_kept(at, false, ctx),
+            None => self.messages.note(text::kept::nothing_under(digit)),
+        }
+    }
+
+    /// Goes to something that is kept; to a look also with its view, if that is wanted.
+    pub(in crate::app) fn go_to_kept(&mut self, at: usize, with_view: bool, ctx: &egui::Context) {
+        let Some(kept) = self.settings.kept.get(at).cloned() else { return };
+        if let Some(look) = kept.as_look() {
+            self.settings = self.settings.with_look(look);
+            self.keep_balanced.accept(&self.settings);
+        }
+        if with_view || kept.as_look().is_none() {
+            self.look_as(kept.camera(), Command::GoToKept(at, with_view), ctx);
+        }
+    }
+
+    /// Looks from a view that was kept. Where the object stands otherwise in it, the room turns first.
+    fn look_as(&mut self, camera: &Camera, command: Command, ctx: &egui::Context) {
+        if camera.up != self.settings.camera.up {
+            if !self.first_look_stands_on(camera.up, Some(command), ctx) {
+                return;
+            }
+            self.settings.turn_object(ObjectTurn::Upright(camera.up));
+            self.settings.floor.height = self.defaults.floor.height;
+        }
+        self.settings.camera.clone_from(camera);
+    }
+
+    /// Keeps what is shown in the place of something that is kept.
+    pub(in crate::app) fn replace_kept(&mut self, at: usize) {
+        let Settings { camera, .. } = self.settings.clone();
+        let look = Kept::look(String::new(), &self.settings);
+        if let Some(kept) = self.settings.kept.get_mut(at) {
+            kept.what = match kept.what {
+                KeptThing::View(_) => KeptThing::View(camera),
+                KeptThing::Look(_) => look.what,
+            };
+        }
+    }
+
+    /// Shows two looks to either side of a divider: two that are kept, or the picture and one.
+    pub(in crate::app) fn compare_kept(&mut self, left: Option<usize>, right: usize) {
+        let look = |at: usize| {
+            let look = self.settings.kept.get(at).and_then(Kept::as_look)?;
+            Some(Variant::Look(Box::new(look.clone())))
+        };
+        let left = match left {
+            Some(at) => look(at),
+            None => Some(Variant::Current),
+        };
+        if let Some((left, right)) = left.zip(look(right)) {
+            (self.compare.on, self.compare.left, self.compare.right) = (true, left, right);
+        }
+    }
+
+    /// The strip, if it is shown.
+    pub(in crate::app) fn kept_strip(&mut self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+        self.draw_kept(ui.ctx());
+        if self.layout.kept && self.volume.is_some() {
+            self.strip.show(ui, &mut self.settings, commands);
+        }
+    }
+
+    /// Small pictures of what is kept are made while nothing else is done.
+    fn draw_kept(&mut self, ctx: &egui::Context) {
+        let id = self.viewport.dataset().map(|dataset| dataset.volume().content_id());
+        self.strip.thumbnails.take(ctx);
+        let Some(wanted) = self.strip.thumbnails.wanted(&self.settings, id) else { return };
+        if self.layout.kept
+            && self.is_complete()
+            && !self.export.is_busy()
+            && let Some(subject) = self.subject()
+            && let Err(err) = self.strip.thumbnails.start(wanted, subject, ctx)
+        {
+            log::warn!("small pictures of what is kept are not made: {err}");
+        }
+    }
+}

@@ -1,0 +1,269 @@
+//! The strip of small pictures: one click goes to a view or look, a drag moves it, the right button has the rest.
+
+use eframe::egui::{
+    self, Align, Align2, FontId, Key, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2,
+    vec2,
+};
+
+use super::thumbnails::{Thumbnails, size_for};
+use crate::app::common::commands::Command;
+use crate::app::common::theme;
+use crate::app::text::{self, Named};
+use crate::model::{DIGITS, Kept, MAX_NAME, Settings};
+
+/// Points of a small picture's height.
+const HEIGHT: f32 = 72.0;
+/// Points below it, for its name.
+const NAME: f32 = 18.0;
+
+/// State of the strip.
+#[derive(Debug, Default)]
+pub(in crate::app) struct Strip {
+    pub(super) thumbnails: Thumbnails,
+    /// What is dragged.
+    dragged: Option<usize>,
+    /// What is marked, at most two, the latest last.
+    marked: Vec<usize>,
+}
+
+/// What happened to an item.
+enum Act {
+    Go,
+    Mark,
+    Move(usize),
+    Remove,
+}
+
+fn button(ui: &mut Ui, Named { name, tip }: Named) -> bool {
+    ui.button(name).on_hover_text(tip).clicked()
+}
+
+impl Strip {
+    /// Shows the strip below the picture.
+    pub(super) fn show(&mut self, ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Command>) {
+        let panel = egui::Panel::bottom("kept").resizable(false).frame(theme::panel(ui));
+        panel.exact_size(HEIGHT + NAME + 22.0).show(ui, |ui| {
+            ui.horizontal(|ui| {
+                ui.vertical(|ui| self.buttons(ui, settings, commands));
+                ui.separator();
+                if settings.kept.is_empty() {
+                    ui.add(egui::Label::new(egui::RichText::new(text::kept::NOTHING).weak()).wrap());
+                    return;
+                }
+                let area = egui::ScrollArea::horizontal().auto_shrink(false);
+                area.show(ui, |ui| ui.horizontal(|ui| self.items(ui, settings, commands)));
+            });
+        });
+    }
+
+    fn buttons(&self, ui: &mut Ui, settings: &Settings, commands: &mut Vec<Command>) {
+        ui.set_width(104.0);
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 3.0;
+            if button(ui, text::kept::KEEP_VIEW) {
+                commands.push(Command::KeepView);
+            }
+            if button(ui, text::kept::KEEP_LOOK) {
+                commands.push(Command::KeepInStrip);
+            }
+        });
+        let is_some = !settings.kept.is_empty();
+        let Named { name, tip } = text::kept::SHEET;
+        if ui.add_enabled(is_some, egui::Button::new(name)).on_hover_text(tip).clicked() {
+            commands.push(Command::ExportKept);
+        }
+        if button(ui, text::kept::CLOSE) {
+            commands.push(Command::ToggleKept);
+        }
+        if self.thumbnails.is_busy() {
+            ui.horizontal(|ui| {
+                ui.spinner();
+                let left = settings.kept.iter().filter(|kept| self.thumbnails.get(kept).is_none()).count();
+                ui.weak(text::kept::making(left));
+            });
+        }
+    }
+
+    fn items(&mut self, ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Command>) {
+        self.marked.retain(|&at| settings.kept.get(at).is_some_and(|kept| kept.as_look().is_some()));
+        let mut act = None;
+        let mut places = Vec::new();
+        for at in 0..settings.kept.len() {
+            let response = self.item(ui, at, &settings.kept[at]);
+            places.push(response.rect);
+            if response.clicked() {
+                let marks = ui.input(|input| input.modifiers.command);
+                act = Some((at, if marks { Act::Mark } else { Act::Go }));
+            }
+            if response.drag_started() {
+                self.dragged = Some(at);
+            }
+            response.context_menu(|ui| {
+                if let Some(chosen) = self.menu(ui, at, settings, commands) {
+                    act = Some((at, chosen));
+                }
+            });
+        }
+        if let Some(from) = self.dragged {
+            let to = gap_at(ui, &places);
+            if let (Some(to), true) = (to, ui.input(|input| input.pointer.any_down())) {
+                let x = places.get(to).map_or_else(
+                    || places.last().map_or(0.0, |rect| rect.right() + 3.0),
+                    |rect| rect.left() - 3.0,
+                );
+                let rows = places[0].y_range();
+                ui.painter().vline(x, rows, Stroke::new(2.0, theme::ACCENT));
+            } else {
+                self.dragged = None;
+                act = to.map(|to| (from, Act::Move(to)));
+            }
+        }
+        match act {
+            None => {}
+            Some((at, Act::Go)) => commands.push(Command::GoToKept(at, false)),
+            Some((at, Act::Mark)) => self.mark(at, settings, commands),
+            Some((from, Act::Move(to))) => {
+                self.marked.clear();
+                let kept = settings.kept.remove(from);
+                settings.kept.insert(if to > from { to - 1 } else { to }, kept);
+            }
+            Some((at, Act::Remove)) => {
+                self.marked.clear();
+                settings.kept.remove(at);
+            }
+        }
+    }
+
+    /// One picture with its name.
+    fn item(&self, ui: &mut Ui, at: usize, kept: &Kept) -> Response {
+        let size = size_for(HEIGHT);
+        let (whole, response) = ui.allocate_exact_size(size + vec2(0.0, NAME), Sense::click_and_drag());
+        let is_look = kept.as_look().is_some();
+        response
+            .widget_info(|| WidgetInfo::labeled(Role::Button, true, text::kept::go_to(&kept.name, is_look)));
+        let picture = Rect::from_min_size(whole.min, size);
+        let painter = ui.painter_at(whole.expand(3.0));
+        painter.rect_filled(picture, 3.0, theme::EMPTY_CANVAS);
+        if let Some(texture) = self.thumbnails.get(kept) {
+            let all = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+            painter.image(texture.id(), picture, all, egui::Color32::WHITE);
+        }
+        // A look is more than a view: it has a swatch of its colours.
+        if let Some(look) = kept.as_look() {
+            let dots = look.transfer.points.iter().rev().take(3).map(|point| point.color);
+            for (number, color) in (0..).zip(dots) {
+                let middle = picture.left_bottom() + vec2(9.0 + 10.0 * number as f32, -9.0);
+                painter.circle(middle, 4.0, theme::color(color), Stroke::new(1.0, theme::OUTLINE));
+            }
+        }
+        if let Some(digit) = kept.digit {
+            let corner = Rect::from_min_size(picture.min + vec2(3.0, 3.0), vec2(14.0, 14.0));
+            painter.rect_filled(corner, 3.0, theme::OUTLINE.gamma_multiply(0.8));
+            let font = FontId::proportional(11.0);
+            painter.text(corner.center(), Align2::CENTER_CENTER, digit.to_string(), font, theme::EYE_CURVE);
+        }
+        let is_marked = self.marked.contains(&at);
+        if is_marked || response.hovered() || response.has_focus() {
+            let ink = if is_marked { theme::ACCENT } else { theme::GUIDE };
+            painter.rect_stroke(
+                picture,
+                3.0,
+                Stroke::new(if is_marked { 2.5 } else { 1.5 }, ink),
+                StrokeKind::Inside,
+            );
+        }
+        let mut row = ui.new_child(
+            egui::UiBuilder::new()
+                .max_rect(Rect::from_min_max(picture.left_bottom(), whole.max))
+                .layout(egui::Layout::top_down(Align::Center)),
+        );
+        row.add(egui::Label::new(egui::RichText::new(&kept.name).small()).truncate().selectable(false));
+        if response.has_focus() && ui.input(|input| input.key_pressed(Key::Enter)) {
+            ui.request_repaint();
+        }
+        response.on_hover_text(text::kept::tip(&kept.name, is_look, kept.digit))
+    }
+
+    /// What the right button offers.
+    fn menu(
+        &mut self,
+        ui: &mut Ui,
+        at: usize,
+        settings: &mut Settings,
+        commands: &mut Vec<Command>,
+    ) -> Option<Act> {
+        let mut act = None;
+        let mut close = false;
+        let taken: Vec<_> = settings.kept.iter().filter_map(|kept| kept.digit).collect();
+        let kept = settings.kept.get_mut(at)?;
+        let is_look = kept.as_look().is_some();
+        ui.horizontal(|ui| {
+            let label = ui.label(text::kept::NAME);
+            let field = egui::TextEdit::singleline(&mut kept.name).char_limit(MAX_NAME).desired_width(170.0);
+            let response = ui.add(field).labelled_by(label.id);
+            close |= response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        });
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 1.0;
+            ui.label(text::kept::DIGIT);
+            for digit in DIGITS {
+                let is_free = kept.digit == Some(digit) || !taken.contains(&digit);
+                let is_own = kept.digit == Some(digit);
+                let choice = ui.add_enabled(is_free, egui::Button::selectable(is_own, digit.to_string()));
+                if choice.on_hover_text(text::kept::key(digit)).clicked() {
+                    kept.digit = (!is_own).then_some(digit);
+                }
+            }
+        });
+        ui.separator();
+        if is_look && button(ui, text::kept::WITH_VIEW) {
+            commands.push(Command::GoToKept(at, true));
+            close = true;
+        }
+        if button(ui, text::kept::REPLACE) {
+            commands.push(Command::ReplaceKept(at));
+            close = true;
+        }
+        if is_look && button(ui, text::kept::COMPARE) {
+            commands.push(Command::CompareKept(None, at));
+            close = true;
+        }
+        if is_look && button(ui, text::kept::MARK) {
+            act = Some(Act::Mark);
+            close = true;
+        }
+        ui.separator();
+        if button(ui, text::kept::REMOVE) {
+            act = Some(Act::Remove);
+            close = true;
+        }
+        if close {
+            ui.close();
+        }
+        act
+    }
+
+    /// Marks a look, or takes the mark away; the second one is compared with the first.
+    fn mark(&mut self, at: usize, settings: &Settings, commands: &mut Vec<Command>) {
+        if settings.kept.get(at).is_none_or(|kept| kept.as_look().is_none()) {
+            return;
+        }
+        if let Some(known) = self.marked.iter().position(|&marked| marked == at) {
+            self.marked.remove(known);
+            return;
+        }
+        if self.marked.len() == 2 {
+            self.marked.remove(0);
+        }
+        self.marked.push(at);
+        if let [left, right] = self.marked[..] {
+            commands.push(Command::CompareKept(Some(left), right));
+        }
+    }
+}
+
+/// Between which items the pointer is, as the number of those before it; none where there is no pointer.
+fn gap_at(ui: &Ui, places: &[Rect]) -> Option<usize> {
+    let x = ui.input(|input| input.pointer.interact_pos())?.x;
+    Some(places.iter().filter(|rect| rect.center().x < x).count())
+}

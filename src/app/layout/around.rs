@@ -1,0 +1,79 @@
+//! The panels around the picture.
+
+use eframe::egui;
+
+use crate::app::common::commands::Command;
+use crate::app::common::theme;
+use crate::app::shell::{menu, status};
+use crate::app::viewport::Facts;
+use crate::app::{App, panels};
+
+impl App {
+    /// The panels around the picture.
+    pub(in crate::app) fn around(&mut self, ui: &mut egui::Ui, facts: &Facts, commands: &mut Vec<Command>) {
+        self.layout.theme = ui.ctx().options(|options| options.theme_preference);
+        self.help.ui(ui.ctx(), facts, self.settings.camera.up);
+        if self.layout.picture_only {
+            return;
+        }
+        let title = self.title();
+        let step = self.step();
+        let history = &self.history;
+        let name_of_step = |is_back: bool| history.name(&step, is_back);
+        let shown = menu::Shown {
+            side: self.layout.side,
+            transfer: self.layout.transfer,
+            kept: self.layout.kept,
+            handles: !self.handles.hidden,
+            compares: self.compare.on,
+            overlay: self.overlay.on,
+            probe: self.probe.on,
+        };
+        menu::show(
+            ui,
+            &mut menu::Menu {
+                settings: &mut self.settings,
+                title,
+                step: &name_of_step,
+                shown,
+                several: self.volume.as_ref().map(|volume| &volume.held),
+                recent: self.memory.recent(),
+                recent_pictures: &mut self.recent_pictures,
+                keeps_look: self.keeps_look,
+                earlier: self.memory.earlier(),
+                frame_ms: &mut self.viewport.frame_ms,
+                commands,
+            },
+        );
+        let exporting = self.export.progress_unseen();
+        status::show(ui, facts, self.loader.progress(), exporting, &mut self.messages, commands);
+        if let Some(volume) = &self.volume {
+            let panel = egui::Panel::bottom("transfer").resizable(true).default_size(theme::EDITOR_HEIGHT);
+            let panel = panel.frame(theme::panel(ui));
+            let panel = panel.size_range(90.0..=420.0);
+            panel.show_collapsible(ui, &mut self.layout.transfer, |ui| {
+                self.editor.ui(ui, &mut self.settings, volume, self.probe.value(), commands);
+            });
+        }
+        let panel = egui::Panel::right("side").resizable(true).default_size(theme::SIDE_WIDTH);
+        let panel = panel.size_range(theme::SIDE_WIDTHS).frame(theme::panel(ui));
+        let treated_as = self.treated.kind();
+        panel.show_collapsible(ui, &mut self.layout.side, |ui| {
+            panels::show(
+                ui,
+                &mut panels::Panels {
+                    settings: &mut self.settings,
+                    defaults: &self.defaults,
+                    volume: self.volume.as_ref(),
+                    treated_as,
+                    selected_light: &mut self.selected_light,
+                    compare: &mut self.compare,
+                    facts,
+                    balancing: self.balance.is_some(),
+                    commands,
+                },
+            );
+        });
+        self.kept_strip(ui, commands);
+    }
+}

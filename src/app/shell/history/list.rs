@@ -1,0 +1,97 @@
+//! The list of steps: what each has changed, and one click to go there.
+
+use eframe::egui;
+
+use super::{History, Step};
+use crate::app::common::commands::Command;
+use crate::app::common::frame;
+use crate::app::{App, text};
+
+/// What steps have changed, the first one first, and which of them was taken last: 0 for none.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Steps {
+    pub names: Vec<String>,
+    pub taken: usize,
+}
+
+/// The list, and what it was made for.
+#[derive(Debug, Default)]
+pub(crate) struct Listed {
+    /// Whether it is shown.
+    pub open: bool,
+    of: Option<Step>,
+    steps: Steps,
+}
+
+impl History {
+    /// All steps back and forward.
+    pub(super) fn steps(&self, now: &Step) -> Steps {
+        let copy = || Self { undoer: self.undoer.clone() };
+        let names = |is_back: bool| {
+            let (mut history, mut at, mut names) = (copy(), now.clone(), Vec::new());
+            while let Some(name) = history.name(&at, is_back) {
+                names.push(name);
+                if is_back {
+                    history.undo(&mut at);
+                } else {
+                    history.redo(&mut at);
+                }
+            }
+            names
+        };
+        let mut all = names(true);
+        all.reverse();
+        let taken = all.len();
+        all.extend(names(false));
+        Steps { names: all, taken }
+    }
+}
+
+impl App {
+    /// Shows the list of steps, if it is wanted.
+    pub(in crate::app) fn history_list(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) {
+        if !self.listed.open {
+            self.listed.of = None;
+            return;
+        }
+        let now = self.step();
+        // Names are found by taking every step.
+        if self.listed.of.as_ref() != Some(&now) {
+            self.listed.steps = self.history.steps(&now);
+            self.listed.of = Some(now);
+        }
+        let Steps { names, taken } = &self.listed.steps;
+        let window = egui::Window::new(text::history::TITLE).open(&mut self.listed.open).collapsible(false);
+        let window =
+            window.default_size([260.0, 320.0]).default_pos([40.0, 80.0]).constrain_to(frame::room(ctx));
+        let mut chosen = None;
+        let shown = window.show(ctx, |ui| {
+            egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                if ui.selectable_label(*taken == 0, text::history::START).clicked() {
+                    chosen = Some(0);
+                }
+                for (at, name) in (1..).zip(names) {
+                    let mut row = egui::RichText::new(text::history::step(at, name));
+                    if at > *taken {
+                        row = row.weak();
+                    }
+                    let row = ui.selectable_label(at == *taken, row);
+                    if row.clicked() {
+                        chosen = Some(at);
+                    }
+                }
+            });
+        });
+        if let Some(at) = chosen {
+            commands.push(Command::GoSteps(at as i32 - *taken as i32));
+        }
+        self.listed.open &= !frame::is_left(ctx, shown.as_ref().map(|shown| &shown.response));
+    }
+
+    /// Goes so many steps forward, or back if they are negative.
+    pub(in crate::app) fn go_steps(&mut self, steps: i32, ctx: &egui::Context) {
+        for _ in 0..steps.unsigned_abs() {
+            self.go(steps < 0, ctx);
+        }
+    }
+}

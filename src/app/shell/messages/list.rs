@@ -1,0 +1,41 @@
+//! The list of all that was said.
+
+use eframe::egui::{self, RichText};
+
+use super::Messages;
+use crate::app::common::frame;
+use crate::app::text;
+
+impl Messages {
+    /// Shows the list, if it is wanted.
+    pub(crate) fn list(&mut self, ctx: &egui::Context) {
+        if !self.lists {
+            return;
+        }
+        let window = egui::Window::new(text::messages::LIST).open(&mut self.lists).collapsible(false);
+        let window = window.default_size([460.0, 260.0]).constrain_to(frame::room(ctx));
+        let shown = window.show(ctx, |ui| {
+            if self.past.is_empty() {
+                ui.weak(text::messages::NOTHING_SAID);
+            }
+            egui::ScrollArea::vertical().auto_shrink(false).stick_to_bottom(true).show(ui, |ui| {
+                for (when, message) in &self.past {
+                    ui.horizontal_top(|ui| {
+                        ui.weak(text::memory::since(when.elapsed()));
+                        ui.vertical(|ui| {
+                            let mut short = RichText::new(&message.short);
+                            if message.is_error {
+                                short = short.color(ui.visuals().error_fg_color);
+                            }
+                            ui.add(egui::Label::new(short).wrap());
+                            if !message.details.is_empty() {
+                                ui.add(egui::Label::new(RichText::new(&message.details).weak()).wrap());
+                            }
+                        });
+                    });
+                }
+            });
+        });
+        self.lists &= !frame::is_left(ctx, shown.as_ref().map(|shown| &shown.response));
+    }
+}

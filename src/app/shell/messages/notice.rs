@@ -1,0 +1,79 @@
+//! The notice over the picture.
+
+use std::time::Duration;
+
+use eframe::egui::{self, Align2, Id, Order, Rect, RichText, vec2};
+
+use super::{Messages, NOTE_S};
+use crate::app::common::frame;
+use crate::app::text;
+
+/// Points from the top of the picture: chips and words of a comparison are there.
+const BELOW_TOP: f32 = 40.0;
+
+/// Points for the buttons beside the words.
+const BUTTONS: f32 = 150.0;
+
+/// Points of the widest notice.
+const WIDEST: f32 = 620.0;
+
+impl Messages {
+    /// Shows the message over the picture, if there is one.
+    pub(crate) fn notice(&mut self, ctx: &egui::Context, picture: Rect) {
+        let Some(message) = &self.current else { return };
+        let now_s = ctx.input(|input| input.time);
+        let mut over = false;
+        if !message.is_error {
+            let until_s = *self.until_s.get_or_insert(now_s + NOTE_S);
+            over = now_s >= until_s;
+            ctx.request_repaint_after(Duration::from_secs_f64((until_s - now_s).max(0.0)));
+        }
+        let place = picture.center_top() + vec2(0.0, BELOW_TOP.min(picture.height() / 4.0));
+        let area = egui::Area::new(Id::unique("notice"))
+            .order(Order::Foreground)
+            .fixed_pos(place)
+            .pivot(Align2::CENTER_TOP)
+            .constrain_to(ctx.content_rect());
+        let shown = area.show(ctx, |ui| {
+            egui::Frame::popup(ui.style()).show(ui, |ui| {
+                let font = egui::TextStyle::Body.resolve(ui.style());
+                let color = ui.visuals().text_color();
+                let needed = ui.painter().layout_no_wrap(message.words(), font, color).size().x + BUTTONS;
+                ui.set_width(needed.min(WIDEST).min(picture.width() - 24.0).max(BUTTONS));
+                ui.horizontal(|ui| {
+                    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                        over |= ui.small_button(text::messages::DISMISS).clicked();
+                        if !message.details.is_empty() && ui.small_button(text::messages::DETAILS).clicked() {
+                            self.expanded ^= true;
+                        }
+                        // What is left of the row is the message's, which is cut rather than its buttons.
+                        ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                            let words = message.words();
+                            let mut rich = RichText::new(&words);
+                            if message.is_error {
+                                rich = rich.color(ui.visuals().error_fg_color);
+                            }
+                            ui.add(egui::Label::new(rich).truncate()).on_hover_text(&words);
+                        });
+                    });
+                });
+            });
+        });
+        // Whoever reads it has time to.
+        if shown.response.contains_pointer() && !message.is_error {
+            self.until_s = Some(now_s + NOTE_S);
+        }
+        if self.expanded {
+            let shown = egui::Window::new(text::messages::WHAT_HAPPENED)
+                .open(&mut self.expanded)
+                .collapsible(false)
+                .constrain_to(frame::room(ctx))
+                .default_pos(picture.center_top() + vec2(-200.0, BELOW_TOP + 40.0))
+                .show(ctx, |ui| ui.label(&message.details));
+            self.expanded &= !frame::is_left(ctx, shown.as_ref().map(|shown| &shown.response));
+        }
+        if over {
+            self.current = None;
+        }
+    }
+}

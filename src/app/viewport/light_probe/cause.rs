@@ -1,0 +1,259 @@
+//! Why a place is dark or bright, in one sentence, and what can be done about it.
+
+use crate::app::text;
+use crate::app::text::common::LengthUnit;
+use crate::model::{Light, Settings, Sides};
+use crate::plan::{Arrival, Probe};
+
+/// From this share of all light on nobody asks why it is dark.
+const BRIGHT: f64 = 0.6;
+
+/// What decides how bright a place is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Cause {
+    /// Most of the light gets there.
+    Lit { light: usize, share: f64 },
+    /// No light is on.
+    AllOff,
+    /// A light is on the other side of the surface.
+    FacesAway { light: usize },
+    /// It lies outside a light's cone.
+    OutsideCone { light: usize },
+    /// Material takes the light before it gets there, at that distance in scene units.
+    Absorbed { light: usize, share: f64, distance: Option<f64> },
+    /// A light falls on the surface at a low angle.
+    Grazing { light: usize, angle_deg: f64 },
+}
+
+/// How much of a light arrives, and how much would if nothing were in its way.
+fn shares(light: &Light, arrival: &Arrival) -> [f64; 2] {
+    let facing = arrival.facing.map_or(1.0, |facing| facing.max(0.0));
+    let could = if light.on { light.intensity } else { 0.0 };
+    [could * arrival.transmittance * arrival.hood * facing, could]
+}
+
+impl Cause {
+    /// What decides at a place.
+    pub(super) fn of(settings: &Settings, found: &Probe) -> Self {
+        let all: Vec<_> = settings.lights.iter().zip(&found.lights).collect();
+        let parts: Vec<[f64; 2]> = all.iter().map(|(light, arrival)| shares(light, arrival)).collect();
+        let sum = |which: usize| parts.iter().map(|part| part[which]).sum::<f64>();
+        let (arrives, could) = (sum(0), sum(1));
+        if could <= 0.0 {
+            return Self::AllOff;
+        }
+        let most = |of: &dyn Fn(&[f64; 2]) -> f64| {
+            (0..parts.len()).max_by(|&a, &b| of(&parts[a]).total_cmp(&of(&parts[b]))).unwrap_or_default()
+        };
+        if arrives >= BRIGHT * could {
+            let light = most(&|part| part[0]);
+            return Self::Lit { light, share: parts[light][0] / parts[light][1].max(1e-9) };
+        }
+        // The light that is missed most.
+        let light = most(&|[arrives, could]| could - arrives);
+        let Arrival { transmittance, hood, facing, blocked } = *all[light].1;
+        match facing {
+            _ if hood < 0.5 => Self::OutsideCone { light },
+            Some(facing) if facing <= 0.0 => Self::FacesAway { light },
+            Some(facing) if facing < transmittance => {
+                Self::Grazing { light, angle_deg: facing.clamp(0.0, 1.0).asin().to_degrees() }
+            }
+            _ => {
+                Self::Absorbed { light, share: 1.0 - transmittance, distance: blocked.map(|[near, _]| near) }
+            }
+        }
+    }
+
+    /// The sentence. `mm_per_unit`: millimetres of a scene unit.
+    pub(super) fn words(self, settings: &Settings, mm_per_unit: f64, unit: LengthUnit) -> String {
+        let name = |light: usize| {
+            let name = settings.lights.get(light).map_or("", |light| light.name.as_str());
+            if name.is_empty() { text::lights::UNNAMED } else { name }
+        };
+        match self {
+            Self::Lit { light, share } => text::probe::lit(name(light), share),
+            Self::AllOff => text::probe::ALL_OFF.to_owned(),
+            Self::FacesAway { light } => text::probe::faces_away(name(light)),
+            Self::OutsideCone { light } => text::probe::outside_cone(name(light)),
+            Self::Grazing { light, angle_deg } => text::probe::grazing(name(light), angle_deg),
+            Self::Absorbed { light, share, distance } => {
+                let distance = distance.map(|distance| text::probe::length(distance * mm_per_unit, unit));
+                text::probe::absorbed(name(light), share, distance.as_deref())
+            }
+        }
+    }
+
+    /// What helps, the gentlest first.
+    pub(super) fn cures(self) -> Vec<Cure> {
+        match self {
+            Self::Lit { .. } => Vec::new(),
+            Self::AllOff => vec![Cure::SwitchOn(0), Cure::MoreAmbient],
+            Self::FacesAway { light } => vec![Cure::Headlight, Cure::BothSides, Cure::TurnHere(light)],
+            Self::OutsideCone { light } => vec![Cure::WidenCone(light), Cure::NoCone(light)],
+            Self::Grazing { light, .. } => vec![Cure::Headlight, Cure::TurnHere(light), Cure::MoreAmbient],
+            Self::Absorbed { light, .. } => {
+                vec![Cure::LetThrough, Cure::LiftShadows, Cure::NoShadowOf(light)]
+            }
+        }
+    }
+}
+
+/// Something that makes a place brighter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Cure {
+    /// Light meets half of the extinction.
+    LetThrough,
+    /// An ambient offset (P §4).
+    LiftShadows,
+    /// More light from everywhere.
+    MoreAmbient,
+    /// A light casts no shadows.
+    NoShadowOf(usize),
+    /// A weak light from where the eye is.
+    Headlight,
+    /// Both sides of surfaces are lit.
+    BothSides,
+    /// A light goes half of the way to the eye.
+    TurnHere(usize),
+    /// A cone becomes wider.
+    WidenCone(usize),
+    /// A light shines everywhere.
+    NoCone(usize),
+    /// A light is switched on.
+    SwitchOn(usize),
+}
+
+impl Cure {
+    /// What its button says, and its tip.
+    pub(super) fn named(self) -> text::Named {
+        match self {
+            Self::LetThrough => text::probe::LET_THROUGH,
+            Self::LiftShadows => text::probe::LIFT_SHADOWS,
+            Self::MoreAmbient => text::probe::MORE_AMBIENT,
+            Self::NoShadowOf(_) => text::probe::NO_SHADOW,
+            Self::Headlight => text::probe::HEADLIGHT,
+            Self::BothSides => text::probe::BOTH_SIDES,
+            Self::TurnHere(_) => text::probe::TURN_HERE,
+            Self::WidenCone(_) => text::probe::WIDEN_CONE,
+            Self::NoCone(_) => text::probe::NO_CONE,
+            Self::SwitchOn(_) => text::probe::SWITCH_ON,
+        }
+    }
+
+    /// Does it.
+    pub(super) fn apply(self, settings: &mut Settings) {
+        let Settings { lights, shadows, shading, lighting, camera, .. } = settings;
+        match self {
+            Self::LetThrough => lighting.scale *= 0.5,
+            Self::LiftShadows => shadows.ambient_offset += 0.15,
+            Self::MoreAmbient => shading.ambient += 0.1,
+            Self::BothSides => shading.sides = Sides::Two,
+            Self::Headlight => {
+                if lights.len() < crate::model::MAX_LIGHTS {
+                    lights.push(Light {
+                        name: text::probe::HEADLIGHT_NAME.to_owned(),
+                        intensity: 0.4,
+                        casts_shadows: false,
+                        position: [0.0, 0.0, 3.0],
+                        lock: crate::model::LightLock::Camera,
+                        ..Light::default()
+                    });
+                }
+            }
+            Self::NoShadowOf(at)
+            | Self::TurnHere(at)
+            | Self::WidenCone(at)
+            | Self::NoCone(at)
+            | Self::SwitchOn(at) => {
+                let Some(light) = lights.get_mut(at) else { return };
+                match self {
+                    Self::NoShadowOf(_) => light.casts_shadows = false,
+                    Self::WidenCone(_) => light.hood.half_angle_deg += 15.0,
+                    Self::NoCone(_) => light.hood.on = false,
+                    Self::SwitchOn(_) => light.on = true,
+                    _ => {
+                        let world = light.in_scene(camera);
+                        let from = glam::DVec3::from(world.position);
+                        let eye = camera.scene_from_view().z_axis;
+                        let towards = (from.normalize_or(eye) + eye).normalize_or(eye);
+                        light.set_scene_position(towards * from.length(), camera);
+                    }
+                }
+            }
+        }
+        settings.sanitise();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    fn found(lights: Vec<Arrival>) -> Probe {
+        let origin = DVec3::ZERO;
+        Probe { point: origin, index: origin, world_mm: origin, value: 1.0, opacity: 1.0, lights, sky: None }
+    }
+
+    const LIT: Arrival = Arrival { transmittance: 0.9, hood: 1.0, facing: Some(0.9), blocked: None };
+
+    fn words(settings: &Settings, lights: Vec<Arrival>) -> String {
+        Cause::of(settings, &found(lights)).words(settings, 50.0, LengthUnit::showing(1.0, false))
+    }
+
+    #[test]
+    fn the_cause_is_named_in_one_sentence() {
+        let mut settings = Settings::default();
+        settings.lights[0].name = "Key".to_owned();
+        assert_eq!(words(&settings, vec![LIT]), "Lit: 81 % of Key arrives");
+        let dark = Arrival { transmittance: 0.3, blocked: Some([0.24, 0.5]), ..LIT };
+        assert_eq!(words(&settings, vec![dark]), "Dark: 70 % of Key is absorbed 12.0 mm before");
+        let away = Arrival { facing: Some(-0.5), ..LIT };
+        assert_eq!(words(&settings, vec![away]), "Dark: the surface faces away from Key");
+        let outside = Arrival { hood: 0.0, ..LIT };
+        assert_eq!(words(&settings, vec![outside]), "Dark: outside the spotlight cone of Key");
+        let low = Arrival { facing: Some(0.2), ..LIT };
+        assert_eq!(words(&settings, vec![low]), "Dim: Key falls in at only 12° to the surface");
+        settings.lights[0].on = false;
+        assert_eq!(words(&settings, vec![LIT]), "Dark: no light is on");
+    }
+
+    #[test]
+    fn the_light_that_is_missed_most_is_blamed() {
+        let mut settings = Settings::default();
+        settings.lights[0].name = "Fill".to_owned();
+        settings.lights[0].intensity = 0.3;
+        settings.lights.push(Light { name: "Key".to_owned(), intensity: 1.0, ..Light::default() });
+        let dark = Arrival { transmittance: 0.05, ..LIT };
+        assert!(words(&settings, vec![dark, dark]).contains("Key"));
+        assert!(words(&settings, vec![LIT, dark]).contains("Key"));
+    }
+
+    #[test]
+    fn every_cure_changes_the_look_and_helps() {
+        let settings = Settings::default();
+        let cures = [
+            Cure::LetThrough,
+            Cure::LiftShadows,
+            Cure::MoreAmbient,
+            Cure::NoShadowOf(0),
+            Cure::Headlight,
+            Cure::BothSides,
+            Cure::TurnHere(0),
+        ];
+        for cure in cures {
+            let mut after = settings.clone();
+            cure.apply(&mut after);
+            assert_ne!(after, settings, "{cure:?}");
+            assert!(!cure.named().name.is_empty());
+        }
+        let eye = settings.camera.scene_from_view().z_axis;
+        let angle = |settings: &Settings| {
+            let world = settings.lights[0].in_scene(&settings.camera);
+            DVec3::from(world.position).angle_between(eye)
+        };
+        let mut nearer = settings.clone();
+        Cure::TurnHere(0).apply(&mut nearer);
+        assert!((angle(&nearer) - angle(&settings) / 2.0).abs() < 1e-6);
+    }
+}

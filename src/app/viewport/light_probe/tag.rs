@@ -1,0 +1,76 @@
+//! The tag beside the pointer, or beside the place that was clicked: the cause in one sentence, what is known, and what
+//! helps.
+
+use eframe::egui::{self, Id, Key, Modifiers, Order, Pos2, Rect, RichText, Ui, vec2};
+
+use super::cause::{Cause, Cure};
+use crate::app::text;
+
+/// Points from the place to the tag.
+const ASIDE: f32 = 18.0;
+/// Points of the widest tag.
+const WIDEST: f32 = 320.0;
+
+/// What a tag says.
+pub(super) struct Tag {
+    pub cause: Option<Cause>,
+    /// The cause in words.
+    pub sentence: String,
+    /// What is known, a line each.
+    pub facts: String,
+    /// How far it is from the place that was clicked before.
+    pub distance: Option<String>,
+    /// The place was clicked: there is time for buttons.
+    pub is_pinned: bool,
+}
+
+/// Shows the tag beside a place of the picture; what the user wants to be done.
+pub(super) fn show(ui: &Ui, picture: Rect, at: Pos2, tag: &Tag) -> Option<Cure> {
+    let mut chosen = None;
+    // On the side where there is more room.
+    let is_right = at.x < picture.center().x;
+    let is_below = at.y < picture.center().y;
+    let pivot = match (is_right, is_below) {
+        (true, true) => egui::Align2::LEFT_TOP,
+        (true, false) => egui::Align2::LEFT_BOTTOM,
+        (false, true) => egui::Align2::RIGHT_TOP,
+        (false, false) => egui::Align2::RIGHT_BOTTOM,
+    };
+    let side = |positive: bool| if positive { ASIDE } else { -ASIDE };
+    let place = at + vec2(side(is_right), side(is_below));
+    let area = egui::Area::new(Id::unique("probe tag"))
+        .order(Order::Middle)
+        .fixed_pos(place)
+        .pivot(pivot)
+        .constrain_to(picture.shrink(4.0))
+        .interactable(tag.is_pinned);
+    area.show(ui.ctx(), |ui| {
+        egui::Frame::popup(ui.style()).show(ui, |ui| {
+            ui.set_max_width(WIDEST.min(picture.width() - 40.0));
+            ui.label(RichText::new(&tag.sentence).strong());
+            if let Some(distance) = &tag.distance {
+                ui.label(distance);
+            }
+            if !tag.is_pinned {
+                ui.weak(text::probe::CLICK);
+                return;
+            }
+            ui.weak(&tag.facts);
+            let cures = tag.cause.map(Cause::cures).unwrap_or_default();
+            ui.horizontal_wrapped(|ui| {
+                for cure in cures {
+                    let text::Named { name, tip } = cure.named();
+                    if ui.button(name).on_hover_text(tip).clicked() {
+                        chosen = Some(cure);
+                    }
+                }
+            });
+        });
+    });
+    chosen
+}
+
+/// Whether Escape was pressed, and nothing else has taken that.
+pub(super) fn is_left(ui: &Ui) -> bool {
+    ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape))
+}

@@ -1,0 +1,152 @@
+//! What is written over an exported picture so that it speaks for itself: a scale bar, which side of a body is where, and
+//! which colour stands for which value.
+
+mod layer;
+mod legend;
+mod scale_bar;
+mod sides;
+
+pub use self::layer::Layer;
+pub use self::scale_bar::{ScaleBar, scale_bar};
+pub use self::sides::{SIDES, sides};
+use crate::data::Volume;
+use crate::model::{ImageSpec, Settings};
+
+/// Height of letters as a share of a picture's shorter edge: as in figures of journals, which are read at a third of a page.
+const LETTERS: f64 = 1.0 / 32.0;
+
+/// The lowest letters that are read, in pixels.
+const LEAST: f64 = 11.0;
+
+/// Height of letters in a picture.
+fn letter_height([width, height]: [u32; 2]) -> f64 {
+    (f64::from(width.min(height)) * LETTERS).max(LEAST)
+}
+
+/// What is to be laid over a picture of a volume.
+pub fn marks(shot: &ImageSpec, settings: &Settings, volume: &Volume) -> Layer {
+    let mut layer = Layer::default();
+    let letters = letter_height(shot.size);
+    if shot.marks.scale_bar {
+        let [width, height] = shot.size.map(f64::from);
+        let mm_per_pixel = settings.camera.pixel_at_target(width, height) * volume.scene().mm_per_unit;
+        if let Some(bar) = scale_bar(mm_per_pixel * width, volume.has_unknown_scale()) {
+            bar.draw(&mut layer, bar.length_mm / mm_per_pixel, [width, height], letters);
+        }
+    }
+    if shot.marks.letters && volume.is_anatomical() {
+        sides::draw(&mut layer, &settings.camera, shot.size.map(f64::from), letters);
+    }
+    if shot.marks.legend {
+        legend::draw(&mut layer, settings, volume, shot.size.map(f64::from), letters);
+    }
+    layer
+}
+
+/// A sheet of pictures side by side, each with its name below; see [`Sheet::add`].
+#[derive(Debug)]
+pub struct Sheet {
+    tile: [u32; 2],
+    columns: u32,
+    size: [u32; 2],
+    margin: u32,
+    letters: f64,
+    shown: Vec<u8>,
+    layer: Layer,
+    count: u32,
+}
+
+impl Sheet {
+    /// A sheet for so many pictures of a size, as square as it can be.
+    pub fn new(count: u32, tile: [u32; 2]) -> Self {
+        let columns = f64::from(count.max(1)).sqrt().ceil() as u32;
+        let rows = count.max(1).div_ceil(columns);
+        let letters = f64::from(tile[1]) / 16.0;
+        let margin = tile[0] / 32;
+        let below = (letters * 1.6) as u32;
+        let size = [columns * (tile[0] + margin) + margin, rows * (tile[1] + margin + below) + margin];
+        // The dark of the window behind its pictures.
+        let shown = [0x14, 0x16, 0x1a, 0xff].repeat((size[0] * size[1]) as usize);
+        Self { tile, columns, size, margin, letters, shown, layer: Layer::default(), count: 0 }
+    }
+
+    /// Adds a picture of sRGB bytes with its name.
+    pub fn add(&mut self, name: &str, picture: &[u8]) {
+        let [width, height] = self.tile;
+        let (column, row) = (self.count % self.columns, self.count / self.columns);
+        self.count += 1;
+        let below = (self.letters * 1.6) as u32;
+        let left = self.margin + column * (width + self.margin);
+        let top = self.margin + row * (height + self.margin + below);
+        for (y, pixels) in picture.chunks_exact(width as usize * 4).take(height as usize).enumerate() {
+            let at = ((top as usize + y) * self.size[0] as usize + left as usize) * 4;
+            if let Some(place) = self.shown.get_mut(at..at + pixels.len()) {
+                place.copy_from_slice(pixels);
+            }
+        }
+        let middle = [f64::from(left) + f64::from(width) / 2.0, f64::from(top + height) + 0.2 * self.letters];
+        let most = f64::from(width);
+        let mut name = name.to_owned();
+        while Layer::width(&name, self.letters) > most && name.pop().is_some() {}
+        self.layer.write(&name, middle, [0.5, 0.0], self.letters);
+    }
+
+    /// The sheet, and its size.
+    pub fn finish(self) -> ([u32; 2], Vec<u8>) {
+        let mut rows = crate::export::Rows::Bytes(self.shown);
+        self.layer.lay_over(&ImageSpec::new(self.size), 0, &mut rows);
+        match rows {
+            crate::export::Rows::Bytes(shown) => (self.size, shown),
+            crate::export::Rows::Floats(_) => (self.size, Vec::new()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::Histogram;
+    use crate::data::synthetic::builtin;
+    use crate::export::Rows;
+    use crate::model::Marks;
+    use crate::model::auto::first_settings;
+
+    /// Which columns and rows of a picture are written over.
+    fn written(marks: Marks) -> Option<[usize; 4]> {
+        let volume = builtin("chair", Some(16)).unwrap();
+        let settings = first_settings(&volume, &Histogram::of(&volume));
+        let shot = ImageSpec { marks, ..ImageSpec::new([400, 300]) };
+        let mut rows = Rows::Bytes(vec![0; 400 * 300 * 4]);
+        super::marks(&shot, &settings, &volume).lay_over(&shot, 0, &mut rows);
+        let Rows::Bytes(shown) = rows else { unreachable!() };
+        let inked = shown.chunks(4).enumerate().filter(|(_, pixel)| pixel[3] > 0);
+        let places: Vec<_> = inked.map(|(at, _)| (at % 400, at / 400)).collect();
+        let (xs, ys) = (places.iter().map(|p| p.0), places.iter().map(|p| p.1));
+        Some([xs.clone().min()?, ys.clone().min()?, xs.max()?, ys.max()?])
+    }
+
+    #[test]
+    fn marks_are_where_they_are_looked_for() {
+        assert_eq!(written(Marks::default()), None);
+        let [left, top, right, bottom] = written(Marks { scale_bar: true, ..Marks::default() }).unwrap();
+        assert!(left < 20 && right < 200 && top > 240 && bottom < 300, "{left} {top} {right} {bottom}");
+        let [left, top, right, bottom] = written(Marks { legend: true, ..Marks::default() }).unwrap();
+        assert!(left > 250 && right < 400 && top > 40 && bottom < 290, "{left} {top} {right} {bottom}");
+        // Nobody knows which side of a chair is its right one.
+        assert_eq!(written(Marks { letters: true, ..Marks::default() }), None);
+    }
+
+    #[test]
+    fn sheets_have_a_place_for_every_picture() {
+        let mut sheet = Sheet::new(3, [64, 48]);
+        for ink in [10, 100, 200] {
+            sheet.add("name", &[ink; 64 * 48 * 4]);
+        }
+        let ([width, height], shown) = sheet.finish();
+        assert_eq!(shown.len(), (width * height * 4) as usize);
+        for ink in [10, 100, 200] {
+            let count = shown.chunks(4).filter(|pixel| **pixel == [ink; 4]).count();
+            assert!(count >= 64 * 48, "{count} of {ink}");
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! Where the object ends that settings show of a volume: what views are framed by.
+
+use glam::DVec3;
+
+use super::super::object::Object;
+use super::{corners, frame_points};
+use crate::data::Volume;
+use crate::model::{Camera, FRAME_ASPECT, Projection, Settings};
+
+/// Share of the frame that what turns may reach: all but a breath of it.
+const FULL: f64 = 0.98;
+
+/// How much further away than what is nearest the eye stays where rays are parallel.
+const BEHIND: f64 = 1.05;
+
+/// Share of the outline that may lie outside: single voxels of noise.
+const OUTSIDE: f64 = 0.001;
+
+/// The outline of an object, in scene space.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Outline {
+    points: Vec<DVec3>,
+}
+
+impl Outline {
+    /// The outline of what settings show of a volume, but for specks, tables and what is cut away. This goes through all
+    /// voxels.
+    pub fn of(settings: &Settings, volume: &Volume) -> Self {
+        let mut points = corners(volume, &Object::shown_by(settings, volume));
+        let region = settings.cuts.seen().region(&volume.scene());
+        let index_from_scene = volume.scene().scene_from_index.inverse();
+        let is_left = |point: &DVec3| region.contains(index_from_scene.transform_point3(*point));
+        if points.iter().any(is_left) {
+            points.retain(is_left);
+        }
+        Self { points }
+    }
+
+    /// Whether there is nothing to frame.
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// Points a camera at the object from where it looks, near enough that this fills the frame.
+    pub fn frame(&self, camera: &mut Camera) {
+        if !self.is_empty() {
+            frame_points(camera, &self.points);
+        }
+    }
+
+    /// The least distance from its target at which a camera has the object in its frame, from where it looks; 0 where
+    /// there is none.
+    pub fn least_distance(&self, camera: &Camera) -> f64 {
+        if self.is_empty() {
+            return 0.0;
+        }
+        let view = camera.scene_from_view();
+        let up = FULL * camera.half_height_at_target(FRAME_ASPECT) / camera.distance;
+        let target = DVec3::from(camera.target);
+        let mut distances: Vec<f64> = self
+            .points
+            .iter()
+            .map(|point| {
+                let local = view.transpose() * (*point - target);
+                let aside = (local.y.abs() / up).max(local.x.abs() / (up * FRAME_ASPECT));
+                match camera.projection {
+                    // What is nearer to the eye than the target by z is larger.
+                    Projection::Perspective => aside + local.z,
+                    // Nothing may be behind the eye.
+                    Projection::Orthographic => aside.max(local.z * BEHIND),
+                }
+            })
+            .collect();
+        let at = ((distances.len() as f64 * (1.0 - OUTSIDE)) as usize).min(distances.len() - 1);
+        *distances.select_nth_unstable_by(at, f64::total_cmp).1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{Histogram, Samples};
+    use crate::model::auto::first_settings;
+
+    /// A bar along x in a corner of a volume.
+    fn bar() -> Volume {
+        let n = 48;
+        let value = |at: usize| {
+            let [x, y, z] = [at % n, at / n % n, at / n / n];
+            if (4..44).contains(&x) && (6..12).contains(&y) && (8..14).contains(&z) { 200 } else { 0 }
+        };
+        let voxels = Samples::U8((0..n * n * n).map(value).collect());
+        Volume::with_spacing("bar", [n; 3], DVec3::ONE, voxels).unwrap()
+    }
+
+    /// How far the object reaches in a 4:3 picture: 1 is the border.
+    fn reach(outline: &Outline, camera: &Camera) -> f64 {
+        let reach = outline.points.iter().map(|point| {
+            let (x, y, _) = camera.pixel_from_scene(*point, 400.0, 300.0).unwrap();
+            ((x - 200.0) / 200.0).abs().max(((y - 150.0) / 150.0).abs())
+        });
+        reach.fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn views_from_all_sides_have_the_object_in_their_frame() {
+        let volume = bar();
+        let settings = first_settings(&volume, &Histogram::of(&volume));
+        let outline = Outline::of(&settings, &volume);
+        for projection in [Projection::Perspective, Projection::Orthographic] {
+            for (azimuth_deg, elevation_deg) in [(0.0, 0.0), (90.0, 0.0), (0.0, 90.0), (40.0, -30.0)] {
+                let mut camera = Camera { azimuth_deg, elevation_deg, projection, ..settings.camera.clone() };
+                outline.frame(&mut camera);
+                let reached = reach(&outline, &camera);
+                assert!((0.6..=1.0).contains(&reached), "{projection:?} {azimuth_deg}: {reached}");
+                camera.distance = outline.least_distance(&camera);
+                let reached = reach(&outline, &camera);
+                // Where rays are parallel, a long object seen from its end needs a place for the eye.
+                let least = if projection == Projection::Perspective { FULL - 0.02 } else { 0.1 };
+                assert!((least..FULL + 0.02).contains(&reached), "{projection:?} {azimuth_deg}: {reached}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_cut_away_is_not_framed() {
+        let volume = bar();
+        let mut settings = first_settings(&volume, &Histogram::of(&volume));
+        let whole = Outline::of(&settings, &volume);
+        settings.cuts.crop.on = true;
+        settings.cuts.crop.high[0] = 0.5;
+        let half = Outline::of(&settings, &volume);
+        assert!(half.points.len() < whole.points.len() && !half.is_empty());
+        // Where nothing is left, all of it is framed.
+        settings.cuts.crop.high[0] = 0.02;
+        assert_eq!(Outline::of(&settings, &volume), whole);
+        assert_eq!(Outline::default().least_distance(&settings.camera), 0.0);
+    }
+}
