@@ -43,7 +43,7 @@ impl Strip {
     pub(super) fn show(&mut self, ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Command>) {
         let panel = egui::Panel::bottom("kept").resizable(false).frame(theme::panel(ui));
         panel.exact_size(HEIGHT + NAME + 22.0).show(ui, |ui| {
-            ui.horizontal(|ui| {
+            ui.horizontal_top(|ui| {
                 ui.vertical(|ui| self.buttons(ui, settings, commands));
                 ui.separator();
                 if settings.kept.is_empty() {
@@ -51,7 +51,7 @@ impl Strip {
                     return;
                 }
                 let area = egui::ScrollArea::horizontal().auto_shrink(false);
-                area.show(ui, |ui| ui.horizontal(|ui| self.items(ui, settings, commands)));
+                area.show(ui, |ui| ui.horizontal_top(|ui| self.items(ui, settings, commands)));
             });
         });
     }

@@ -4,6 +4,8 @@
 mod around;
 mod over;
 
+use std::path::PathBuf;
+
 use eframe::egui::{self, Key, Modifiers, ThemePreference};
 use serde::{Deserialize, Serialize};
 
@@ -23,6 +25,8 @@ pub(crate) struct Layout {
     pub transfer: bool,
     /// The strip of kept views and looks is there.
     pub kept: bool,
+    /// The folder where the last export went.
+    pub exports: Option<PathBuf>,
     /// Dark, light, or as the system is.
     theme: ThemePreference,
     /// Nothing but the picture, until the user leaves that.
@@ -32,7 +36,14 @@ pub(crate) struct Layout {
 
 impl Default for Layout {
     fn default() -> Self {
-        Self { side: true, transfer: true, kept: false, theme: ThemePreference::Dark, picture_only: false }
+        Self {
+            side: true,
+            transfer: true,
+            kept: false,
+            exports: None,
+            theme: ThemePreference::Dark,
+            picture_only: false,
+        }
     }
 }
 

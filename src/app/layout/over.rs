@@ -72,6 +72,7 @@ impl App {
             None => {}
             Some(export::Request::Choose) => self.files.ask(Purpose::ExportPicture, frame, ctx),
             Some(export::Request::Export) => self.start_export(ctx),
+            Some(export::Request::NoFolder(why)) => self.messages.error(text::export::NO_FOLDER, why),
         }
     }
 }

@@ -44,7 +44,11 @@ impl App {
                 None => self.files.ask(Purpose::SaveSettings, frame, ctx),
             },
             Command::LoadSettings => self.files.ask(Purpose::LoadSettings, frame, ctx),
-            Command::Export => self.export.open(self.viewport_size()),
+            Command::Export => {
+                let size = self.viewport_size();
+                let volume = self.volume.as_ref().map_or("", |volume| volume.name.as_str());
+                self.export.open(size, self.layout.exports.as_deref(), volume);
+            }
             Command::CancelExport => self.export.cancel(),
             Command::CopyPicture => self.copy_picture(ctx),
             Command::KeepLook => self.keeps_look ^= true,
@@ -245,7 +249,11 @@ impl App {
         }
         match self.export.take() {
             None => {}
-            Some(Ok(Exported::File(path))) => self.messages.note(text::messages::exported(&path)),
+            Some(Ok(Exported::File(path))) => {
+                self.layout.exports =
+                    std::path::absolute(&path).ok().and_then(|path| Some(path.parent()?.to_owned()));
+                self.messages.note(text::messages::exported(&path));
+            }
             Some(Ok(Exported::Picture(picture))) => {
                 ctx.copy_image(picture);
                 self.messages.note(text::messages::PICTURE_COPIED);

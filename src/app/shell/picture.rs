@@ -14,7 +14,7 @@ use crate::app::viewport::hints::Hints;
 use crate::app::viewport::light_handles::LightHandles;
 use crate::app::viewport::light_probe::{LightProbe, Pointing};
 use crate::app::viewport::orbit::Orbit;
-use crate::app::viewport::overlay::Overlay;
+use crate::app::viewport::overlay::{Overlay, crop_frame};
 use crate::app::viewport::view_projection::ViewProjection;
 use crate::app::viewport::{Facts, Viewport, light_chips, light_probe, nothing_seen, orbit};
 use crate::app::windows::slices::Slices;
@@ -46,6 +46,8 @@ pub(crate) struct PictureInputs<'a> {
     pub orbit: &'a mut Orbit,
     /// Where the object ends, if that is known.
     pub outline: Option<&'a Outline>,
+    /// The shape of the picture that would be exported, while somebody is asked.
+    pub shape: Option<f64>,
     /// Cuts through the data, and their cursor.
     pub slices: &'a mut Slices,
     /// What the first picture says.
@@ -72,6 +74,7 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
         probe,
         orbit,
         outline,
+        shape,
         slices,
         hints,
         volume,
@@ -144,6 +147,9 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
     } else {
         viewport.advance(compare.looks(settings), canvas.size, ui.ctx())
     };
+    if let Some(shape) = shape {
+        crop_frame::show(ui, canvas.rect, &settings.camera, shape);
+    }
     hints.show(ui, canvas.rect, &response);
     let pictures = viewport.pictures();
     compare.ui(ui, canvas.rect, &pictures);
@@ -169,6 +175,7 @@ impl App {
             probe: &mut self.probe,
             orbit: &mut self.orbit,
             outline: outline.as_deref(),
+            shape: self.export.shape(),
             slices: &mut self.slices,
             hints: &mut self.hints,
             volume: self.volume.as_ref(),

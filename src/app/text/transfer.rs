@@ -83,3 +83,7 @@ pub(crate) fn reversed_tip(map: &str) -> String {
 pub(crate) fn at_pointer(value: &str, opacity: f64) -> String {
     format!("{value} · opacity {opacity:.2}")
 }
+
+/// Draws a curve by hand.
+pub(crate) const FREEHAND: Named =
+    named("Draw", "Draw the curve by hand: a stroke becomes few points. Escape ends it");

@@ -5,6 +5,7 @@
 
 mod backdrop;
 mod fields;
+mod freehand;
 mod menus;
 mod plot;
 mod selection;
@@ -13,6 +14,7 @@ mod zoom;
 use eframe::egui::{self, Key, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo};
 
 use self::backdrop::{Backdrop, Bars};
+use self::freehand::Freehand;
 use self::plot::Axes;
 use self::selection::{Selection, Shift};
 use self::zoom::{Span, Zoom, limits};
@@ -48,6 +50,7 @@ pub(super) struct TransferEditor {
     zoom: Zoom,
     span: Span,
     backdrop: Backdrop,
+    freehand: Freehand,
 }
 
 /// What stands where the curve would, if labels have looks.
@@ -70,6 +73,7 @@ impl TransferEditor {
             log_histogram: true,
             zoom: Zoom::default(),
             span: Span::default(),
+            freehand: Freehand::default(),
         }
     }
 }
@@ -125,11 +129,16 @@ impl TransferEditor {
         let name =
             if self.curve == Curve::Light { text::transfer::LIGHT_POINT } else { text::transfer::EYE_POINT };
         let function = self.edited(settings);
-        self.add_point(&response, &axes, function);
-        self.selection.frame(ui, &response, &axes, function);
-        self.select_by_keys(ui, &response, function.points.len());
-        let limits = limits(volume.ranges, span);
-        self.edit_points(ui, &axes, function, name, limits, response.contains_pointer());
+        if self.freehand.on {
+            self.selection.clear();
+            self.freehand.draw(ui, &response, &axes, function);
+        } else {
+            self.add_point(&response, &axes, function);
+            self.selection.frame(ui, &response, &axes, function);
+            self.select_by_keys(ui, &response, function.points.len());
+            let limits = limits(volume.ranges, span);
+            self.edit_points(ui, &axes, function, name, limits, response.contains_pointer());
+        }
         self.left = self.edited(settings).clone();
         plot::readout(ui, &axes, &response, settings);
         plot::mark(ui, &axes, marked);
@@ -165,6 +174,8 @@ impl TransferEditor {
         if selected.is_empty() {
             menus::whole_curve(ui, function, span);
             menus::shapes(ui, function, volume, self.zoom.shown(span));
+            let draw = text::transfer::FREEHAND;
+            ui.toggle_value(&mut self.freehand.on, draw.name).on_hover_text(draw.tip);
             if is_wide {
                 ui.add(egui::Label::new(egui::RichText::new(text::transfer::HINT).weak()).truncate());
             }

@@ -16,7 +16,6 @@ pub(super) mod nothing_seen;
 pub(super) mod orbit;
 pub(super) mod overlay;
 pub(super) mod paint_callback;
-mod sides;
 pub(super) mod view_projection;
 
 use std::sync::Arc;

@@ -6,6 +6,7 @@
 pub(super) mod baked;
 pub(super) mod categories;
 pub(super) mod color_map;
+mod freehand;
 pub(super) mod oklab;
 pub(super) mod transmitted;
 

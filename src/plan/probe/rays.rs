@@ -15,8 +15,8 @@ const NOTHING: f64 = 0.03;
 /// The optical depth of what hardly dims a light: a tenth.
 const LITTLE: f64 = 0.1;
 
-/// Share of a loss that lies before what is called its place, and behind it.
-const ENDS: f64 = 0.1;
+/// Share of a loss that lies before what is called its place, and behind it: the surface that is seen takes some, too.
+const ENDS: f64 = 0.25;
 
 /// Voxel edges (the smallest) per step of a ray.
 const STEP: f64 = 0.5;
@@ -93,7 +93,7 @@ impl Rays<'_> {
         sum * step
     }
 
-    /// Between which distances from a point towards a light all but a tenth of its loss at either end happens; none where
+    /// Between which distances from a point towards a light all but a quarter of its loss at either end happens; none where
     /// hardly anything is lost.
     pub(super) fn blocked(
         &self,

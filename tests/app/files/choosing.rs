@@ -179,7 +179,7 @@ fn what_is_dropped_at_once_is_opened_as_what_it_is() {
     for slice in &slices[..2] {
         harness.input_mut().dropped_files.push(std::sync::Arc::new(Dropped(slice.clone())));
     }
-    harness.run_steps(2);
+    harness.run_steps(4);
     assert!(harness.query_by_label_contains("those that were dropped").is_some());
     let name = folder.path().file_name().unwrap().to_string_lossy().into_owned();
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some(name.as_str()));

@@ -66,6 +66,7 @@ fn a_missing_file_leaves_the_volume_alone() {
     let ctx = harness.ctx.clone();
     harness.state_mut().open("/no/such/volume.nrrd", &ctx);
     wait_until(&mut harness, "no error", |app| !app.errors().is_empty());
+    harness.run_steps(3);
     assert!(harness.query_by_label_contains("there is no such file").is_some());
     assert_eq!(harness.state().volume_name(), Some("chair"));
     assert_eq!(harness.state().settings(), &before);

@@ -12,6 +12,9 @@ pub(crate) const SCALE_BAR: Named = named("Scale bar", "How long things are, at 
 pub(crate) const LETTERS: Named =
     named("Orientation letters", "Which side of a body is where, if the file says it");
 pub(crate) const LEGEND: Named = named("Legend", "Which colour stands for which value or label");
+pub(crate) const SHOW_IN_FOLDER: &str = "Show in folder";
+pub(crate) const COPY_PATH: &str = "Copy path";
+pub(crate) const NO_FOLDER: &str = "The folder cannot be shown";
 pub(crate) const NO_BYTES: &str = "the picture has no bytes";
 pub(crate) const EXPORT: &str = "Export";
 
@@ -100,4 +103,17 @@ pub(crate) fn pictures_done(done: u32, total: u32) -> String {
 /// The system is out of threads.
 pub(crate) fn no_thread(err: impl Display) -> String {
     format!("no thread for the export: {err}")
+}
+
+/// Where a file goes.
+pub(crate) fn goes_to(path: &std::path::Path) -> String {
+    format!("Goes to {}", path.display())
+}
+
+/// How long an export still takes.
+pub(crate) fn left(left: std::time::Duration) -> String {
+    match left.as_secs() {
+        0..90 => format!("{} s left", left.as_secs().max(1)),
+        seconds => format!("{} min left", (seconds + 30) / 60),
+    }
 }

@@ -47,7 +47,8 @@ impl Cause {
         };
         if arrives >= BRIGHT * could {
             let light = most(&|part| part[0]);
-            return Self::Lit { light, share: parts[light][0] / parts[light][1].max(1e-9) };
+            let Arrival { transmittance, hood, .. } = *all[light].1;
+            return Self::Lit { light, share: transmittance * hood };
         }
         // The light that is missed most.
         let light = most(&|[arrives, could]| could - arrives);
@@ -205,7 +206,7 @@ mod tests {
     fn the_cause_is_named_in_one_sentence() {
         let mut settings = Settings::default();
         settings.lights[0].name = "Key".to_owned();
-        assert_eq!(words(&settings, vec![LIT]), "Lit: 81 % of Key arrives");
+        assert_eq!(words(&settings, vec![LIT]), "Lit: 90 % of Key arrives");
         let dark = Arrival { transmittance: 0.3, blocked: Some([0.24, 0.5]), ..LIT };
         assert_eq!(words(&settings, vec![dark]), "Dark: 70 % of Key is absorbed 12.0 mm before");
         let away = Arrival { facing: Some(-0.5), ..LIT };

@@ -52,11 +52,17 @@ pub(super) fn show(ui: &Ui, picture: Rect, at: Pos2, tag: &Tag) -> Option<Cure> 
                 ui.label(distance);
             }
             if !tag.is_pinned {
-                ui.weak(text::probe::CLICK);
+                // Where nothing is seen, nothing is dark.
+                if tag.cause.is_some() {
+                    ui.weak(text::probe::CLICK);
+                }
                 return;
             }
             ui.weak(&tag.facts);
             let cures = tag.cause.map(Cause::cures).unwrap_or_default();
+            if cures.is_empty() {
+                return;
+            }
             ui.horizontal_wrapped(|ui| {
                 for cure in cures {
                     let text::Named { name, tip } = cure.named();

@@ -5,7 +5,7 @@ use std::sync::atomic::Ordering;
 
 use eframe::egui::{self, Ui};
 
-use super::{Export, Kind, Request};
+use super::{Export, Kind, Request, destination};
 use crate::app::common::frame;
 use crate::app::text::{self, Named};
 use crate::export::{AnimationFormat, PictureFormat, frame_names};
@@ -77,14 +77,16 @@ impl Export {
             });
             ui.horizontal(|ui| {
                 let label = ui.label(text::export::FILE);
-                let field = egui::TextEdit::singleline(&mut self.path).desired_width(280.0);
+                let field = egui::TextEdit::singleline(&mut self.path).desired_width(320.0);
                 if ui.add(field).labelled_by(label.id).changed() {
+                    self.is_named = true;
                     self.follow_name();
                 }
                 if ui.button(text::export::CHOOSE).clicked() {
                     request = Some(Request::Choose);
                 }
             });
+            self.destination_ui(ui);
             ui.horizontal(|ui| {
                 let ready = !self.is_busy() && !self.path.trim().is_empty();
                 if ui.add_enabled(ready && !self.asks, egui::Button::new(text::export::EXPORT)).clicked() {
@@ -98,8 +100,40 @@ impl Export {
             if self.asks && self.question_ui(ui) {
                 request = Some(Request::Export);
             }
+            if let Some(asked) = self.last_ui(ui) {
+                request = Some(asked);
+            }
         });
         self.open = open && !frame::is_left(ctx, shown.as_ref().map(|shown| &shown.response));
+        request
+    }
+
+    /// Where the file goes, if the name does not say all of it.
+    fn destination_ui(&self, ui: &mut Ui) {
+        let whole = destination::whole(&self.path);
+        if whole != Path::new(self.path.trim()) {
+            let words = text::export::goes_to(&whole);
+            ui.add(egui::Label::new(egui::RichText::new(&words).weak()).truncate()).on_hover_text(words);
+        }
+    }
+
+    /// What was written last, and how to get there.
+    fn last_ui(&self, ui: &mut Ui) -> Option<Request> {
+        let last = self.last.as_ref().filter(|_| !self.is_busy())?;
+        let mut request = None;
+        ui.separator();
+        ui.horizontal(|ui| {
+            if ui.button(text::export::SHOW_IN_FOLDER).clicked()
+                && let Err(err) = destination::show_in_folder(last)
+            {
+                request = Some(Request::NoFolder(err.to_string()));
+            }
+            if ui.button(text::export::COPY_PATH).clicked() {
+                ui.ctx().copy_text(destination::whole(&last.to_string_lossy()).display().to_string());
+            }
+            let words = text::messages::exported(last);
+            ui.add(egui::Label::new(egui::RichText::new(&words).weak()).truncate()).on_hover_text(words);
+        });
         request
     }
 
@@ -223,6 +257,9 @@ impl Export {
                 text::export::pictures_done(done, total)
             };
             ui.add(bar.text(count));
+            if let Some(left) = self.left() {
+                ui.weak(text::export::left(left));
+            }
         } else {
             ui.spinner();
             ui.label(text::export::RENDERING);

@@ -1,5 +1,6 @@
 //! Export: what the user asks for, the window that asks, and the worker that does it.
 
+mod destination;
 mod dialog;
 mod worker;
 
@@ -32,12 +33,14 @@ enum Kind {
 }
 
 /// What the user asks of the export window.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Request {
     /// Choose a file with a dialog.
     Choose,
     /// Render and write.
     Export,
+    /// No program shows folders, and why.
+    NoFolder(String),
 }
 
 /// What is to be exported, and its progress.
@@ -54,7 +57,12 @@ pub(crate) struct Export {
     /// The user is being asked whether it may.
     asks: bool,
     progress: Arc<Progress>,
+    began: Instant,
     work: Option<Work<Result<Exported, String>>>,
+    /// The user has chosen a name, or typed one.
+    is_named: bool,
+    /// What was written last.
+    last: Option<PathBuf>,
 }
 
 impl Default for Export {
@@ -69,15 +77,23 @@ impl Default for Export {
             agreed: None,
             asks: false,
             progress: Arc::default(),
+            began: Instant::now(),
             work: None,
+            is_named: false,
+            last: None,
         }
     }
 }
 
 impl Export {
-    /// Shows the window, at first with the size of the viewport.
-    pub(crate) fn open(&mut self, viewport: [u32; 2]) {
+    /// Shows the window, at first with the size of the viewport and the name of the volume.
+    pub(crate) fn open(&mut self, viewport: [u32; 2], folder: Option<&Path>, volume: &str) {
         self.open = true;
+        if !self.is_named {
+            let ending = Path::new(&self.path).extension().map_or_else(|| "png".into(), |of| of.to_owned());
+            let name = Path::new(&destination::file_name(volume)).with_extension(ending);
+            self.path = destination::folder(folder).join(name).display().to_string();
+        }
         if self.shot.size == [0, 0] {
             self.shot.size = viewport;
         }
@@ -86,6 +102,7 @@ impl Export {
     /// Where to write.
     pub(crate) fn set_path(&mut self, path: &Path) {
         self.path = path.display().to_string();
+        self.is_named = true;
         self.follow_name();
         self.open = true;
     }
@@ -113,6 +130,19 @@ impl Export {
         (self.is_busy() && !self.open).then(|| (done.load(Ordering::Relaxed), total.load(Ordering::Relaxed)))
     }
 
+    /// How long it will take until it is done, where that can be told.
+    pub(crate) fn left(&self) -> Option<Duration> {
+        let [done, total] = [&self.progress.done, &self.progress.total].map(|n| n.load(Ordering::Relaxed));
+        // Of the first one nobody knows how long it takes.
+        (total > 1 && done > 0).then(|| self.began.elapsed() * total.saturating_sub(done) / done)
+    }
+
+    /// The shape of the picture that would be made, as width over height, while the window asks.
+    pub(crate) fn shape(&self) -> Option<f64> {
+        let [width, height] = self.shot.size.map(f64::from);
+        (self.open && width > 0.0 && height > 0.0).then(|| width / height)
+    }
+
     /// Ends what is being made.
     pub(crate) fn cancel(&self) {
         self.progress.cancelled.store(true, Ordering::Relaxed);
@@ -131,7 +161,11 @@ impl Export {
     pub(crate) fn take(&mut self) -> Option<Result<Exported, String>> {
         let result = self.work.as_ref()?.take()?;
         self.work = None;
-        Some(result.and_then(|result| result))
+        let result = result.and_then(|result| result);
+        if let Ok(Exported::File(path)) = &result {
+            self.last = Some(path.clone());
+        }
+        Some(result)
     }
 
     /// Starts to render and write.
@@ -180,6 +214,7 @@ impl Export {
         ctx: &egui::Context,
         task: impl FnOnce() -> Result<Exported, String> + Send + 'static,
     ) -> Result<(), String> {
+        self.began = Instant::now();
         let work = Work::start("export", ctx, task);
         self.work = Some(work.map_err(text::export::no_thread)?);
         Ok(())

@@ -15,6 +15,9 @@ const FILL: f64 = 0.8;
 /// The most that it fills when rays become parallel, which show what is near no larger than what is far: all of it.
 const FILL_PARALLEL: f64 = 0.98;
 
+/// The furthest that the eye goes: what is smaller then is next to nothing.
+const FURTHEST: f64 = 20.0;
+
 /// Share of the outline that may lie beyond each of the sides that the frame is made for: a few voxels of noise.
 const BEYOND: f64 = 0.0005;
 
@@ -101,9 +104,11 @@ fn frame_points(camera: &mut Camera, corners: &[DVec3]) {
             .max(half.x / (wanted * FRAME_ASPECT))
             .max(parallel.y / wanted_parallel)
             .max(parallel.x / (wanted_parallel * FRAME_ASPECT));
-        camera.distance = (camera.distance * factor).clamp(0.3, 20.0);
+        camera.distance = (camera.distance * factor).clamp(0.3, FURTHEST);
     }
     camera.target = target.into();
+    // Things that are much longer than wide, seen from their end, take more rounds.
+    camera.distance = camera.distance.max(outline::least_distance(corners, camera)).min(FURTHEST);
 }
 
 #[cfg(test)]

@@ -51,29 +51,34 @@ impl Outline {
     /// The least distance from its target at which a camera has the object in its frame, from where it looks; 0 where
     /// there is none.
     pub fn least_distance(&self, camera: &Camera) -> f64 {
-        if self.is_empty() {
-            return 0.0;
-        }
-        let view = camera.scene_from_view();
-        let up = FULL * camera.half_height_at_target(FRAME_ASPECT) / camera.distance;
-        let target = DVec3::from(camera.target);
-        let mut distances: Vec<f64> = self
-            .points
-            .iter()
-            .map(|point| {
-                let local = view.transpose() * (*point - target);
-                let aside = (local.y.abs() / up).max(local.x.abs() / (up * FRAME_ASPECT));
-                match camera.projection {
-                    // What is nearer to the eye than the target by z is larger.
-                    Projection::Perspective => aside + local.z,
-                    // Nothing may be behind the eye.
-                    Projection::Orthographic => aside.max(local.z * BEHIND),
-                }
-            })
-            .collect();
-        let at = ((distances.len() as f64 * (1.0 - OUTSIDE)) as usize).min(distances.len() - 1);
-        *distances.select_nth_unstable_by(at, f64::total_cmp).1
+        least_distance(&self.points, camera)
     }
+}
+
+/// The least distance from its target at which a camera has all but [`OUTSIDE`] of some points in its frame; 0 where there
+/// are none.
+pub(super) fn least_distance(points: &[DVec3], camera: &Camera) -> f64 {
+    if points.is_empty() {
+        return 0.0;
+    }
+    let view = camera.scene_from_view();
+    let up = FULL * camera.half_height_at_target(FRAME_ASPECT) / camera.distance;
+    let target = DVec3::from(camera.target);
+    let mut distances: Vec<f64> = points
+        .iter()
+        .map(|point| {
+            let local = view.transpose() * (*point - target);
+            let aside = (local.y.abs() / up).max(local.x.abs() / (up * FRAME_ASPECT));
+            match camera.projection {
+                // What is nearer to the eye than the target by z is larger.
+                Projection::Perspective => aside + local.z,
+                // Nothing may be behind the eye.
+                Projection::Orthographic => aside.max(local.z * BEHIND),
+            }
+        })
+        .collect();
+    let at = ((distances.len() as f64 * (1.0 - OUTSIDE)) as usize).min(distances.len() - 1);
+    *distances.select_nth_unstable_by(at, f64::total_cmp).1
 }
 
 #[cfg(test)]

@@ -1,13 +1,16 @@
 //! Overlay over the picture: the volume's box, a scale bar, and a cube that says from where one looks. They are
 //! painted by the window and are therefore never in an export.
 
+pub(in crate::app) mod crop_frame;
+mod sides;
+
 use eframe::egui::{
     Align2, Color32, FontId, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2,
     vec2,
 };
 use glam::DVec3;
 
-use super::sides::{Letters, letters};
+use self::sides::{Letters, letters};
 use super::view_projection::ViewProjection;
 use crate::app::common::theme;
 use crate::export::{SIDES, scale_bar as bar_for};

@@ -1,0 +1,65 @@
+//! Drawing a curve by hand.
+
+use eframe::egui::{self, CursorIcon, Key, Modifiers, Response, Stroke, Ui};
+
+use super::plot::{self, Axes};
+use super::theme;
+use crate::model::TransferFunction;
+
+/// What is being drawn.
+#[derive(Debug, Default)]
+pub(super) struct Freehand {
+    /// The pointer draws instead of moving points.
+    pub on: bool,
+    /// Value and opacity along the way of the hand.
+    stroke: Vec<[f64; 2]>,
+    /// The curve before.
+    before: Option<TransferFunction>,
+}
+
+impl Freehand {
+    /// Draws while the pointer is held; Escape takes a stroke back, and then stops drawing.
+    pub(super) fn draw(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        axes: &Axes,
+        function: &mut TransferFunction,
+    ) {
+        if response.hovered() {
+            ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
+        }
+        let painter = ui.painter_at(axes.area);
+        for point in &function.points {
+            let at = axes.position(point.value, point.opacity);
+            plot::point(&painter, at, 0.7 * theme::POINT_RADIUS, theme::color(point.color), false);
+        }
+        let is_left = (response.contains_pointer() || self.before.is_some())
+            && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
+        if is_left {
+            match self.before.take() {
+                Some(before) => *function = before,
+                None => self.on = false,
+            }
+            self.stroke.clear();
+            return;
+        }
+        if response.drag_started_by(egui::PointerButton::Primary) {
+            self.before = Some(function.clone());
+            self.stroke.clear();
+        }
+        if let (Some(before), Some(at)) = (&self.before, response.interact_pointer_pos()) {
+            let (value, opacity) = axes.values(at);
+            if self.stroke.last() != Some(&[value, opacity]) {
+                self.stroke.push([value, opacity]);
+            }
+            *function = before.with_stroke(&self.stroke, axes.range.span());
+            let way: Vec<_> =
+                self.stroke.iter().map(|&[value, opacity]| axes.position(value, opacity)).collect();
+            painter.line(way, Stroke::new(1.0, theme::ACCENT.gamma_multiply(0.6)));
+        }
+        if response.drag_stopped() {
+            self.before = None;
+        }
+    }
+}

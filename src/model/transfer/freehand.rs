@@ -1,0 +1,149 @@
+//! Curves that are drawn by hand: a stroke becomes few points.
+
+use super::{ControlPoint, Easing, TransferFunction};
+
+/// Places along a stroke: as many as pixels of a wide editor.
+const PLACES: usize = 1024;
+
+/// How far a curve of few points may lie from the hand's, in opacity: a hand trembles by as much.
+const TOLERANCE: f64 = 0.012;
+
+/// The most points that a stroke becomes; a finer one is followed less closely.
+const MOST: usize = 16;
+
+/// Share of what is shown in which the old curve ends and the drawn one begins.
+const EDGE: f64 = 1.0 / 2048.0;
+
+impl TransferFunction {
+    /// The curve with a stroke in the place of what it had there: pairs of value and opacity, as they were drawn; where the
+    /// hand went back, the later one counts. Colours stay those of their values. `span`: how many values are shown.
+    #[must_use]
+    pub fn with_stroke(&self, stroke: &[[f64; 2]], span: f64) -> Self {
+        let values = || stroke.iter().map(|[value, _]| *value);
+        let (low, high) =
+            (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+        let is_usable = stroke.iter().flatten().all(|number| number.is_finite()) && high - low > span * EDGE;
+        if !is_usable {
+            return self.clone();
+        }
+        let drawn = simplified(&sampled(stroke, low, high));
+        let edge = span * EDGE;
+        let point = |[value, opacity]: [f64; 2]| {
+            ControlPoint::new(value, self.point_at(value).color, opacity.clamp(0.0, 1.0))
+        };
+        let mut curve = self.clone();
+        // Beside the stroke the curve stays as it was.
+        if self.points.first().is_some_and(|point| point.value < low - edge) {
+            curve.cut_at(low - edge);
+        }
+        if self.points.last().is_some_and(|point| point.value > high + edge) {
+            curve.cut_at(high + edge);
+        }
+        curve.points.retain(|point| point.value <= low - edge || point.value >= high + edge);
+        // The way from the last point before the stroke is no longer its own.
+        if let Some(before) = curve.points.iter_mut().rfind(|point| point.value < low) {
+            before.easing = Easing::Linear;
+        }
+        curve.points.extend(drawn.into_iter().map(point));
+        curve.sort();
+        curve
+    }
+}
+
+/// The stroke as a curve: an opacity at each of [`PLACES`] places.
+fn sampled(stroke: &[[f64; 2]], low: f64, high: f64) -> Vec<[f64; 2]> {
+    let place = |value: f64| ((value - low) / (high - low) * (PLACES - 1) as f64).round() as usize;
+    let mut opacities = vec![f64::NAN; PLACES];
+    for pair in stroke.windows(2) {
+        let ([from, a], [to, b]) = (pair[0], pair[1]);
+        let (first, last) = (place(from), place(to));
+        let steps = first.abs_diff(last).max(1);
+        for step in 0..=steps {
+            let share = step as f64 / steps as f64;
+            let at = (first as f64 + (last as f64 - first as f64) * share).round() as usize;
+            opacities[at.min(PLACES - 1)] = a + (b - a) * share;
+        }
+    }
+    let value = |at: usize| low + (high - low) * at as f64 / (PLACES - 1) as f64;
+    opacities
+        .into_iter()
+        .enumerate()
+        .filter(|(_, opacity)| opacity.is_finite())
+        .map(|(at, opacity)| [value(at), opacity])
+        .collect()
+}
+
+/// As few of the points as follow the curve: those that lie furthest from what the others say (Ramer 1972, Douglas and
+/// Peucker 1973), by opacity alone.
+fn simplified(curve: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let (Some(last), true) = (curve.len().checked_sub(1), curve.len() > 2) else { return curve.to_vec() };
+    let mut kept = vec![0, last];
+    while kept.len() < MOST {
+        let furthest = kept
+            .windows(2)
+            .filter_map(|pair| {
+                let (from, to) = (pair[0], pair[1]);
+                let off = |at: usize| {
+                    let share = (curve[at][0] - curve[from][0]) / (curve[to][0] - curve[from][0]);
+                    (curve[at][1] - curve[from][1] - share * (curve[to][1] - curve[from][1])).abs()
+                };
+                let at = (from + 1..to).max_by(|&a, &b| off(a).total_cmp(&off(b)))?;
+                Some((at, off(at)))
+            })
+            .max_by(|a, b| a.1.total_cmp(&b.1));
+        match furthest {
+            Some((at, off)) if off > TOLERANCE => {
+                let place = kept.partition_point(|&known| known < at);
+                kept.insert(place, at);
+            }
+            _ => break,
+        }
+    }
+    kept.into_iter().map(|at| curve[at]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ramp() -> TransferFunction {
+        let points = vec![
+            ControlPoint::new(0.0, [1.0, 0.0, 0.0], 0.0),
+            ControlPoint::new(100.0, [0.0, 0.0, 1.0], 1.0),
+        ];
+        TransferFunction { points, ..TransferFunction::default() }
+    }
+
+    #[test]
+    fn a_stroke_becomes_few_points_that_follow_it() {
+        let hill = |value: f64| 0.5 + 0.4 * (value / 100.0 * std::f64::consts::TAU).sin();
+        let stroke: Vec<_> = (200..=800).map(|at| [at as f64 / 10.0, hill(at as f64 / 10.0)]).collect();
+        let curve = ramp().with_stroke(&stroke, 100.0);
+        assert!(curve.points.len() <= MOST + 4, "{}", curve.points.len());
+        for value in [21.0, 33.0, 50.0, 66.0, 79.0] {
+            let off = curve.opacity_at(value) - hill(value);
+            assert!(off.abs() < 2.0 * TOLERANCE, "{value}: {off}");
+        }
+        for value in [5.0, 19.0, 81.0, 99.0] {
+            assert!((curve.opacity_at(value) - ramp().opacity_at(value)).abs() < 1e-6, "{value}");
+        }
+        let color = |curve: &TransferFunction| curve.point_at(50.0).color;
+        let apart = color(&curve).iter().zip(color(&ramp())).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(apart < 0.05, "colours stay: {apart}");
+    }
+
+    #[test]
+    fn a_straight_line_is_two_points_and_the_later_way_counts() {
+        let there_and_back = [[20.0, 0.1], [80.0, 0.1], [20.0, 0.7]];
+        let curve = ramp().with_stroke(&there_and_back, 100.0);
+        assert_eq!(curve.points.len(), 6, "two of the curve, two beside the stroke, two of it");
+        assert!((curve.opacity_at(50.0) - 0.4).abs() < 1e-3);
+    }
+
+    #[test]
+    fn what_is_no_stroke_changes_nothing() {
+        for stroke in [&[][..], &[[1.0, 0.5]], &[[5.0, 0.1], [5.0, 0.9]], &[[1.0, f64::NAN], [9.0, 0.1]]] {
+            assert_eq!(ramp().with_stroke(stroke, 100.0), ramp());
+        }
+    }
+}
