@@ -3,6 +3,7 @@
 pub(super) mod aspect;
 pub(super) mod command_names;
 pub(super) mod commands;
+pub(super) mod dock;
 pub(super) mod frame;
 pub(super) mod light_keys;
 pub(super) mod places;

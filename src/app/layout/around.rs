@@ -3,6 +3,7 @@
 use eframe::egui;
 
 use crate::app::common::commands::Command;
+use crate::app::common::dock;
 use crate::app::common::theme;
 use crate::app::shell::{menu, status};
 use crate::app::viewport::Facts;
@@ -14,6 +15,7 @@ impl App {
         self.layout.theme = ui.ctx().options(|options| options.theme_preference);
         self.help.ui(ui.ctx(), facts, self.settings.camera.up);
         if self.layout.picture_only {
+            dock::hide(ui.ctx());
             return;
         }
         let title = self.title();
@@ -75,5 +77,7 @@ impl App {
             );
         });
         self.kept_strip(ui, commands);
+        dock::reserve(ui);
+        self.layout.docked = dock::docked(ui.ctx());
     }
 }

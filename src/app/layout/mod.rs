@@ -4,12 +4,14 @@
 mod around;
 mod over;
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use eframe::egui::{self, Key, Modifiers, ThemePreference};
 use serde::{Deserialize, Serialize};
 
 use super::App;
+use super::common::dock;
 use crate::app::text;
 
 /// The name under which it is kept beside what the window toolkit keeps.
@@ -25,6 +27,8 @@ pub(crate) struct Layout {
     pub transfer: bool,
     /// The strip of kept views and looks is there.
     pub kept: bool,
+    /// Tools that are docked beside the picture when they are open.
+    pub docked: BTreeSet<String>,
     /// The folder where the last export went.
     pub exports: Option<PathBuf>,
     /// Dark, light, or as the system is.
@@ -40,6 +44,7 @@ impl Default for Layout {
             side: true,
             transfer: true,
             kept: false,
+            docked: BTreeSet::new(),
             exports: None,
             theme: ThemePreference::Dark,
             picture_only: false,
@@ -56,6 +61,7 @@ impl Layout {
     /// Gives the window the colours that were chosen.
     pub(crate) fn apply(&self, ctx: &egui::Context) {
         ctx.set_theme(self.theme);
+        dock::set_docked(ctx, &self.docked);
     }
 
     /// Keeps it for the next run.

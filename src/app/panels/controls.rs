@@ -88,7 +88,13 @@ pub(super) fn reset(ui: &mut Ui, label: &str, differs: bool) -> bool {
         ui.allocate_exact_size(size, egui::Sense::hover());
         return false;
     }
-    let (area, response) = ui.allocate_exact_size(size, egui::Sense::click());
+    let (_, response) = ui.allocate_exact_size(size, egui::Sense::click());
+    reset_button(ui, response, label)
+}
+
+/// Paints a button that puts something back; whether it was clicked.
+fn reset_button(ui: &Ui, response: Response, label: &str) -> bool {
+    let area = response.rect;
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, text::common::reset(label)));
     let lit = response.hovered() || response.has_focus();
     let ink = if lit { theme::accent(ui.visuals()) } else { ui.visuals().weak_text_color() };
@@ -169,8 +175,26 @@ pub(in crate::app) fn color(ui: &mut Ui, name: &str, srgb: &mut [f32; 3]) -> Res
     response.on_hover_text(name)
 }
 
+/// What the header of a section shows.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Header {
+    /// It is open until somebody closes it.
+    pub open: bool,
+    /// Something is on in it.
+    pub is_active: bool,
+    /// There is something to put back.
+    pub can_reset: bool,
+}
+
 /// A section of the panel. While it opens it is scrolled into sight: all of it, or as much as there is room for.
-pub(super) fn section(ui: &mut Ui, title: &'static str, open: bool, add: impl FnOnce(&mut Ui)) {
+/// `is_active`: a dot says that something is on in it. `can_reset`: there is something to put back; returns whether that is
+/// wanted.
+pub(super) fn section(
+    ui: &mut Ui,
+    title: &'static str,
+    Header { open, is_active, can_reset }: Header,
+    add: impl FnOnce(&mut Ui),
+) -> bool {
     let header = egui::CollapsingHeader::new(egui::RichText::new(title).strong());
     let header = header.open(reveal::opens(ui.ctx(), title, false).then_some(true));
     ui.data_mut(|data| data.insert_temp(section_id(), title));
@@ -178,6 +202,27 @@ pub(super) fn section(ui: &mut Ui, title: &'static str, open: bool, add: impl Fn
         add(ui);
         ui.add_space(4.0);
     });
+    let row = shown.header_response.rect;
+    if is_active {
+        let middle = egui::pos2(row.right() + 8.0, row.center().y);
+        let dot = ui.interact(
+            egui::Rect::from_center_size(middle, Vec2::splat(12.0)),
+            ui.scope_id().with((title, "on")),
+            egui::Sense::hover(),
+        );
+        ui.painter().circle_filled(middle, 3.5, theme::ACCENT);
+        dot.on_hover_text(text::sections::active(title));
+    }
+    let mut resets = false;
+    if can_reset {
+        let right = ui.max_rect().right() - theme::RESET_WIDTH;
+        let area = egui::Rect::from_center_size(
+            egui::pos2(right, row.center().y),
+            Vec2::new(theme::RESET_WIDTH, row.height()),
+        );
+        let button = ui.interact(area, ui.scope_id().with((title, "reset")), egui::Sense::click());
+        resets = reset_button(ui, button, title);
+    }
     let id = shown.header_response.id.with("openness");
     let before = ui.data(|data| data.get_temp::<f32>(id)).unwrap_or(shown.openness);
     ui.data_mut(|data| data.insert_temp(id, shown.openness));
@@ -189,6 +234,7 @@ pub(super) fn section(ui: &mut Ui, title: &'static str, open: bool, add: impl Fn
         ui.scroll_to_rect(rect, align);
     }
     ui.separator();
+    resets
 }
 
 /// Where the title is kept of the section that is being shown.

@@ -10,12 +10,14 @@ mod labels;
 mod lights;
 mod sampling;
 mod scattering;
+mod sections;
 mod shading;
 mod shadows;
 mod sky;
 
 use eframe::egui;
 
+use self::controls::Header;
 use super::common::commands::Command;
 use super::common::volume_facts::VolumeFacts;
 use super::text;
@@ -54,30 +56,49 @@ pub(super) fn show(ui: &mut egui::Ui, panels: &mut Panels<'_>) {
     let room = ui.available_rect_before_wrap();
     let mut inside = ui.new_child(egui::UiBuilder::new().max_rect(room));
     inside.shrink_clip_rect(room);
-    sections(&mut inside, panels);
+    all_sections(&mut inside, panels);
     ui.allocate_rect(room, egui::Sense::hover());
 }
 
-fn sections(ui: &mut egui::Ui, panels: &mut Panels<'_>) {
+fn all_sections(ui: &mut egui::Ui, panels: &mut Panels<'_>) {
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.add_space(2.0);
-        if panels.volume.is_some_and(|volume| volume.is_shown_by_label(panels.settings)) {
-            controls::section(ui, text::sections::LABELS, true, |ui| labels::show(ui, panels));
+        let is_by_label = panels.volume.is_some_and(|volume| volume.is_shown_by_label(panels.settings));
+        if is_by_label {
+            section(ui, text::sections::LABELS, true, panels, labels::show);
         }
-        controls::section(ui, text::sections::LIGHTS, true, |ui| lights::show(ui, panels));
-        controls::section(ui, text::sections::SHADOWS, true, |ui| shadows::show(ui, panels));
-        controls::section(ui, text::sections::SOFT_LIGHT, false, |ui| {
+        section(ui, text::sections::LIGHTS, true, panels, lights::show);
+        section(ui, text::sections::SHADOWS, true, panels, shadows::show);
+        section(ui, text::sections::SOFT_LIGHT, false, panels, |ui, panels| {
             sky::show(ui, panels);
             ui.separator();
             scattering::show(ui, panels);
         });
-        controls::section(ui, text::sections::SHADING, false, |ui| shading::show(ui, panels));
-        controls::section(ui, text::sections::CUTS, false, |ui| cuts::show(ui, panels));
-        controls::section(ui, text::sections::FLOOR, false, |ui| floor::show(ui, panels));
-        controls::section(ui, text::sections::CAMERA, false, |ui| camera::show(ui, panels));
-        controls::section(ui, text::sections::COMPARE, false, |ui| {
+        section(ui, text::sections::SHADING, false, panels, shading::show);
+        section(ui, text::sections::CUTS, false, panels, cuts::show);
+        section(ui, text::sections::FLOOR, false, panels, floor::show);
+        section(ui, text::sections::CAMERA, false, panels, camera::show);
+        section(ui, text::sections::COMPARE, false, panels, |ui, panels| {
             compare::show(ui, panels.compare, panels.settings, panels.commands);
         });
-        controls::section(ui, text::sections::DATA, false, |ui| data::show(ui, panels));
+        section(ui, text::sections::DATA, false, panels, data::show);
     });
+}
+
+/// A section with what its header says.
+fn section(
+    ui: &mut egui::Ui,
+    title: &'static str,
+    open: bool,
+    panels: &mut Panels<'_>,
+    show: impl FnOnce(&mut egui::Ui, &mut Panels<'_>),
+) {
+    let header = Header {
+        open,
+        is_active: sections::is_active(title, panels.settings, panels.compare.on),
+        can_reset: sections::differs(title, panels.settings, panels.defaults),
+    };
+    if controls::section(ui, title, header, |ui| show(ui, panels)) {
+        sections::put_back(title, panels.settings, panels.defaults);
+    }
 }

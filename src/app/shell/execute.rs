@@ -338,6 +338,7 @@ impl App {
             first: self.defaults.clone(),
             source: self.volume.as_ref().map_or_else(PathBuf::new, |volume| volume.source.clone()),
             selected_light: self.selected_light,
+            outline: self.outline(),
         })
     }
 

@@ -5,6 +5,7 @@
 //! presets, colour maps, views and sets of lights are with them in `src/model`; errors word themselves.
 
 pub(super) mod common;
+pub(super) mod dock;
 pub(super) mod history;
 pub(super) mod kept;
 mod panels;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions, Vec2};
 
-use crate::app::common::frame;
+use crate::app::common::dock::Tool;
 use crate::app::text;
 use crate::app::worker::task::Work;
 use crate::data::{Dataset, Volume};
@@ -78,10 +78,8 @@ impl LightSlice {
         }
         let result = self.collect(ctx, scene);
         let (mut open, mut export) = (true, false);
-        let window =
-            egui::Window::new(text::light_volume::TITLE).open(&mut open).collapsible(false).resizable(false);
-        let window = window.constrain_to(frame::room(ctx));
-        let shown = window.default_pos([24.0, 60.0]).show(ctx, |ui| {
+        let tool = Tool { title: text::light_volume::TITLE, default_pos: [24.0, 60.0], default_width: EDGE };
+        tool.show(ctx, &mut open, |ui| {
             ui.horizontal(|ui| {
                 let casting =
                     scene.settings.lights.iter().enumerate().filter(|(_, light)| light.needs_volume());
@@ -116,7 +114,7 @@ impl LightSlice {
             let button = text::light_volume::EXPORT;
             export = ui.button(button.name).on_hover_text(button.tip).clicked();
         });
-        self.open = open && !frame::is_left(ctx, shown.as_ref().map(|shown| &shown.response));
+        self.open = open;
         result.map(|()| export)
     }
 

@@ -31,10 +31,17 @@ struct Message {
 impl Message {
     /// What is said in a row: what happened, and the first reason for it.
     fn words(&self) -> String {
-        match self.details.lines().next().map(str::trim) {
+        let words = match self.details.lines().next().map(str::trim) {
+            // Some errors begin with what has happened.
+            Some(reason) if reason.to_lowercase().starts_with(&self.short.to_lowercase()) => {
+                reason.to_owned()
+            }
             Some(reason) if !reason.is_empty() => format!("{}: {reason}", self.short),
             _ => self.short.clone(),
-        }
+        };
+        // Errors of the library are parts of sentences.
+        let mut letters = words.chars();
+        letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
     }
 }
 
@@ -130,7 +137,12 @@ mod tests {
             let details = details.to_owned();
             Message { short: "not exported".to_owned(), details, is_error: true }.words()
         };
-        assert_eq!(said(""), "not exported");
-        assert_eq!(said("/a/b.png: no such folder\nmore"), "not exported: /a/b.png: no such folder");
+        assert_eq!(said(""), "Not exported");
+        assert_eq!(said("/a/b.png: no such folder\nmore"), "Not exported: /a/b.png: no such folder");
+        assert_eq!(
+            said("not exported: there is no room"),
+            "Not exported: there is no room",
+            "once is enough"
+        );
     }
 }

@@ -10,3 +10,13 @@ pub(crate) const FLOOR: &str = "Floor";
 pub(crate) const CAMERA: &str = "Camera";
 pub(crate) const COMPARE: &str = "Compare";
 pub(crate) const DATA: &str = "Data";
+
+/// All of them, in the order in which they are shown.
+#[cfg(test)]
+pub(crate) const ALL: [&str; 10] =
+    [LABELS, LIGHTS, SHADOWS, SOFT_LIGHT, SHADING, CUTS, FLOOR, CAMERA, COMPARE, DATA];
+
+/// What the dot beside a title says.
+pub(crate) fn active(title: &str) -> String {
+    format!("{title}: something is on")
+}

@@ -21,3 +21,17 @@ pub(crate) const HINT: &str = "Drag: move the cursor\nWheel: next slice\nRight d
 pub(crate) fn across(axis: usize) -> String {
     format!("Slice across {}", ["x", "y", "z"][axis])
 }
+
+/// The plane of the slice across an axis, and where it lies; of bodies by its name.
+pub(crate) fn plane(axis: usize, at: usize, is_anatomical: bool) -> String {
+    let axes = ["x", "y", "z"][axis];
+    let plane = match (is_anatomical, axis) {
+        (true, 0) => "sagittal",
+        (true, 1) => "coronal",
+        (true, _) => "axial",
+        (false, 0) => "yz",
+        (false, 1) => "xz",
+        (false, _) => "xy",
+    };
+    format!("{plane} · {axes} = {at}")
+}

@@ -12,7 +12,7 @@ use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions, vec2};
 use self::sheet::{Candidate, SIZE, Tried};
 use super::export::Subject;
 use crate::app::common::commands::Command;
-use crate::app::common::frame;
+use crate::app::common::dock::Tool;
 use crate::app::common::theme;
 use crate::app::text;
 use crate::app::worker::task::Work;
@@ -26,8 +26,10 @@ const AROUND: f32 = 170.0;
 /// Points of the lowest sheet: a picture with its name.
 const LEAST_HEIGHT: f32 = 150.0;
 
-/// Pictures side by side.
+/// Pictures side by side, before somebody makes the window wider or narrower.
 const COLUMNS: usize = 4;
+/// The most of them: as many as the largest sheets have.
+const MOST_COLUMNS: usize = 12;
 
 /// A candidate and its small picture, on the GPU of the window.
 struct Print {
@@ -82,6 +84,8 @@ pub(crate) struct ContactSheet {
     /// One at a time: each takes a device of its own.
     trying: Option<Trying>,
     prints: Vec<Print>,
+    /// What was taken last.
+    chosen: Option<String>,
 }
 
 impl std::fmt::Debug for ContactSheet {
@@ -96,6 +100,7 @@ impl ContactSheet {
         if self.sheet != sheet {
             self.prints.clear();
         }
+        self.chosen = None;
         (self.open, self.is_due, self.sheet) = (true, true, sheet);
     }
 
@@ -176,10 +181,9 @@ impl ContactSheet {
     pub(crate) fn ui(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) -> Result<(), String> {
         let outcome = self.take(ctx);
         let mut open = self.open;
-        let window =
-            egui::Window::new(self.sheet.title()).open(&mut open).resizable(false).collapsible(false);
-        let window = window.constrain_to(frame::room(ctx));
-        let shown = window.default_pos([60.0, 60.0]).show(ctx, |ui| {
+        let default_width = COLUMNS as f32 * (SIZE[0] as f32 + 8.0);
+        let tool = Tool { title: self.sheet.title(), default_pos: [60.0, 60.0], default_width };
+        tool.show(ctx, &mut open, |ui| {
             ui.horizontal(|ui| {
                 if self.trying.is_some() || self.is_due {
                     ui.spinner();
@@ -199,9 +203,11 @@ impl ContactSheet {
             let most = (ctx.content_rect().height() - AROUND).max(LEAST_HEIGHT);
             let area = egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most);
             area.show(ui, |ui| {
+                let columns = ((ui.available_width() + 8.0) / (SIZE[0] as f32 + 8.0)) as usize;
+                let columns = columns.clamp(1, MOST_COLUMNS);
                 egui::Grid::new("contact sheet").spacing([8.0, 8.0]).show(ui, |ui| {
                     for (at, tried) in self.prints.iter().enumerate() {
-                        if at > 0 && at % COLUMNS == 0 {
+                        if at > 0 && at % columns == 0 {
                             ui.end_row();
                         }
                         ui.vertical(|ui| {
@@ -217,8 +223,13 @@ impl ContactSheet {
                             let button = ui.add(egui::Button::image(image).frame(false));
                             let name = text::contact_sheet::use_look(&tried.name);
                             button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+                            if self.chosen.as_ref() == Some(&tried.name) {
+                                let edge = egui::Stroke::new(2.5, theme::ACCENT);
+                                ui.painter().rect_stroke(button.rect, 2.0, edge, egui::StrokeKind::Inside);
+                            }
                             if button.on_hover_text(&tried.tip).clicked() {
                                 commands.push(tried.command.clone());
+                                self.chosen = Some(tried.name.clone());
                             }
                             ui.small(&tried.name);
                         });
@@ -226,7 +237,6 @@ impl ContactSheet {
                 })
             });
         });
-        open &= !frame::is_left(ctx, shown.as_ref().map(|shown| &shown.response));
         if self.open && !open {
             self.is_due = false;
             self.cancel();
@@ -263,6 +273,7 @@ mod tests {
             first: Settings::default(),
             source: "builtin:sphere:8".into(),
             selected_light: 0,
+            outline: None,
         };
         let mut sheet = ContactSheet::default();
         let ask = |sheet: &mut ContactSheet, subject: Option<&Subject>| {

@@ -81,11 +81,23 @@ impl Sheet {
         };
         let count = candidates.len();
         for candidate in candidates.into_iter().take_while(|_| is_wanted()) {
-            let picture = small_picture(&mut worker, subject, &candidate.settings)?;
+            let picture = small_picture(&mut worker, subject, &closer(&candidate.settings, subject))?;
             hand_on(count, (candidate, picture));
         }
         Ok(())
     }
+}
+
+/// The look from as near as the object's frame allows, if all of it is seen: small pictures have no room for what is around.
+fn closer(settings: &Settings, subject: &Subject) -> Settings {
+    let mut closer = settings.clone();
+    if let Some(outline) = subject.outline.as_ref().filter(|outline| !outline.is_empty()) {
+        let least = outline.least_distance(&closer.camera);
+        if closer.camera.distance > least && least > 0.0 {
+            closer.camera.distance = least;
+        }
+    }
+    closer
 }
 
 /// A picture of a look, made quickly.
@@ -182,7 +194,7 @@ fn looks(
         } else {
             worker.measure(whole, &on_small.dataset, &proposal.settings)?
         };
-        let picture = picture(worker, &on_small, &look.quick)?;
+        let picture = picture(worker, &on_small, &closer(&look.quick, subject))?;
         let candidate = Candidate {
             name: text::contact_sheet::look(at + 1, proposal.name),
             tip: proposal.differs.to_owned(),

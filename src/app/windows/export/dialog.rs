@@ -6,7 +6,7 @@ use std::sync::atomic::Ordering;
 use eframe::egui::{self, Ui};
 
 use super::{Export, Kind, Request, destination};
-use crate::app::common::frame;
+use crate::app::common::dock::Tool;
 use crate::app::text::{self, Named};
 use crate::export::{AnimationFormat, PictureFormat, frame_names};
 use crate::model::{Depth, MAX_EDGE, MAX_SAMPLES, Marks};
@@ -40,10 +40,8 @@ impl Export {
     pub(in crate::app) fn ui(&mut self, ctx: &egui::Context, viewport: [u32; 2]) -> Option<Request> {
         let mut request = None;
         let mut open = self.open;
-        let window =
-            egui::Window::new(text::export::TITLE).open(&mut open).collapsible(false).resizable(false);
-        let window = window.constrain_to(frame::room(ctx));
-        let shown = window.default_pos([160.0, 90.0]).show(ctx, |ui| {
+        let tool = Tool { title: text::export::TITLE, default_pos: [160.0, 90.0], default_width: 440.0 };
+        tool.show(ctx, &mut open, |ui| {
             ui.horizontal(|ui| {
                 for (kind, Named { name, tip }) in KINDS {
                     if ui.selectable_label(self.kind == kind, name).on_hover_text(tip).clicked() {
@@ -104,7 +102,7 @@ impl Export {
                 request = Some(asked);
             }
         });
-        self.open = open && !frame::is_left(ctx, shown.as_ref().map(|shown| &shown.response));
+        self.open = open;
         request
     }
 

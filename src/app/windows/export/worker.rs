@@ -2,6 +2,7 @@
 //! shows.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use eframe::egui;
@@ -13,6 +14,7 @@ use crate::export::{
 };
 use crate::fault::{Place, may_panic};
 use crate::gpu::{Context, GpuError, RenderOptions, Renderer, ShaderLibrary, SmallLook};
+use crate::model::auto::Outline;
 use crate::model::{ImageSpec, KeptThing, Marks, PictureRecord, Record, Settings, VolumeRecord};
 
 /// Pixels of a picture on a sheet of what is kept: 4:3, as first looks are framed, and four beside each other fill a page
@@ -34,6 +36,8 @@ pub(in crate::app) struct Subject {
     pub source: PathBuf,
     /// The light that turns, if one is to.
     pub selected_light: usize,
+    /// Where the object ends, if that is known.
+    pub outline: Option<Arc<Outline>>,
 }
 
 /// What an export ended with.

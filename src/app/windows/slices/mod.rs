@@ -12,7 +12,7 @@ use eframe::egui::{
 use glam::DVec3;
 
 use self::image::{Grey, across, lookup, slice};
-use crate::app::common::frame;
+use crate::app::common::dock::Tool;
 use crate::app::common::theme;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text;
@@ -22,8 +22,11 @@ use crate::data::{Shown, ValueRange, Volume};
 use crate::math::SceneSpace;
 use crate::model::TransferFunction;
 
-/// Longest edge of a slice on screen, in points.
+/// Longest edge of a slice on screen, in points, before somebody makes the window larger or smaller.
 const EDGE: f32 = 208.0;
+/// The least of them, in which something is seen, and the most: two fill a large screen.
+const LEAST_EDGE: f32 = 96.0;
+const MOST_EDGE: f32 = 900.0;
 
 /// Shares of all voxels that are as black, or as white, as can be, before the user says otherwise.
 const CLIPPED: [f64; 2] = [0.005, 0.995];
@@ -50,6 +53,8 @@ pub(crate) struct Slices {
     /// What the wheel has turned beyond whole slices: it comes in many small parts.
     turned: f64,
     cuts: [Cut; 3],
+    /// Longest edge of a slice on screen, in points.
+    edge: f32,
 }
 
 impl std::fmt::Debug for Slices {
@@ -87,10 +92,11 @@ impl Slices {
             }
         };
         let mut open = true;
-        let window =
-            egui::Window::new(text::slices::TITLE).open(&mut open).collapsible(false).resizable(false);
-        let window = window.constrain_to(frame::room(ctx));
-        let shown = window.default_pos([24.0, 60.0]).show(ctx, |ui| {
+        let tool =
+            Tool { title: text::slices::TITLE, default_pos: [24.0, 60.0], default_width: 2.0 * EDGE + 8.0 };
+        tool.show(ctx, &mut open, |ui| {
+            // Two beside each other.
+            self.edge = ((ui.available_width() - 8.0) / 2.0).clamp(LEAST_EDGE, MOST_EDGE);
             // From above, from the front, from the right; and what is at the cursor.
             ui.horizontal_top(|ui| {
                 self.cut(ui, 2, volume, &mut grey, transfer);
@@ -101,7 +107,7 @@ impl Slices {
                 ui.vertical(|ui| self.facts(ui, volume, facts, &mut grey, transfer));
             });
         });
-        self.open = open && !frame::is_left(ctx, shown.as_ref().map(|shown| &shown.response));
+        self.open = open;
         self.of = Some((volume.content_id(), grey.within(facts.range)));
     }
 
@@ -177,8 +183,11 @@ impl Slices {
         let Some(texture) = &cut.texture else { return };
         let spacing = volume.spacing_mm();
         let size = vec2((dims[u] as f64 * spacing[u]) as f32, (dims[v] as f64 * spacing[v]) as f32);
-        let size = (size * (EDGE / size.max_elem())).max(Vec2::splat(2.0));
-        let (frame, response) = ui.allocate_exact_size(Vec2::splat(EDGE), Sense::click_and_drag());
+        let edge = self.edge;
+        let size = (size * (edge / size.max_elem())).max(Vec2::splat(2.0));
+        // Beside each other they begin at the same places.
+        let (frame, response) =
+            ui.allocate_exact_size(vec2(edge, size.y.max(0.4 * edge)), Sense::click_and_drag());
         let area = Rect::from_center_size(frame.center(), size);
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, text::slices::across(axis)));
         let painter = ui.painter_at(frame);
@@ -187,9 +196,12 @@ impl Slices {
         painter.image(texture.id(), area, whole, Color32::WHITE);
         self.move_cursor(ui, &response, area, axis, dims);
         if response.dragged_by(PointerButton::Secondary) {
-            grey.drag(response.drag_delta() / EDGE, volume.shown_range());
+            grey.drag(response.drag_delta() / edge, volume.shown_range());
         }
         crosshair(&painter, area, axis, self.cursor, dims);
+        let name = text::slices::plane(axis, self.cursor[axis], volume.is_anatomical());
+        let font = egui::TextStyle::Small.resolve(ui.style());
+        painter.text(frame.left_top() + vec2(5.0, 3.0), egui::Align2::LEFT_TOP, name, font, theme::EYE_CURVE);
         if response.hovered() {
             ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
         }

@@ -117,7 +117,7 @@ mod tests {
                 let mut camera = Camera { azimuth_deg, elevation_deg, projection, ..settings.camera.clone() };
                 outline.frame(&mut camera);
                 let reached = reach(&outline, &camera);
-                assert!((0.6..=1.0).contains(&reached), "{projection:?} {azimuth_deg}: {reached}");
+                assert!((0.4..=1.0).contains(&reached), "{projection:?} {azimuth_deg}: {reached}");
                 camera.distance = outline.least_distance(&camera);
                 let reached = reach(&outline, &camera);
                 // Where rays are parallel, a long object seen from its end needs a place for the eye.

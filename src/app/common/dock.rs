@@ -1,0 +1,172 @@
+//! Tools: windows over the picture, or docked beside it, where nothing hides anything.
+
+use std::collections::BTreeSet;
+
+use eframe::egui::{
+    self, Align, CursorIcon, Id, LayerId, Layout, Panel, Rect, RichText, Sense, Stroke, Ui, UiBuilder, pos2,
+    vec2,
+};
+
+use super::frame;
+use super::theme;
+use crate::app::text;
+
+/// Width of the dock in points, before somebody drags its border.
+const WIDTH: f32 = 470.0;
+/// The narrowest dock, in which the narrowest tool is not cut.
+const NARROWEST: f32 = 240.0;
+/// What the dock leaves of the picture.
+const PICTURE: f32 = 240.0;
+/// Points of a docked tool's header.
+const HEADER: f32 = 26.0;
+/// Points of the title bar of a window, from its right border, where the toolkit has its own button.
+const CLOSE: f32 = 30.0;
+
+/// Which tools are docked, and where they lie.
+#[derive(Debug, Clone, Default)]
+struct Dock {
+    docked: BTreeSet<String>,
+    /// Docked tools that were shown in the frame before, in this order from the top.
+    before: Vec<&'static str>,
+    /// Those of this frame.
+    now: Vec<&'static str>,
+    area: Option<Rect>,
+    /// There is nothing but the picture.
+    is_hidden: bool,
+}
+
+fn change<R>(ctx: &egui::Context, change: impl FnOnce(&mut Dock) -> R) -> R {
+    ctx.data_mut(|data| change(data.get_temp_mut_or_default(Id::unique("dock"))))
+}
+
+/// Which tools are docked, by their titles.
+pub(in crate::app) fn docked(ctx: &egui::Context) -> BTreeSet<String> {
+    change(ctx, |dock| dock.docked.clone())
+}
+
+/// Docks tools, as they were left.
+pub(in crate::app) fn set_docked(ctx: &egui::Context, titles: &BTreeSet<String>) {
+    change(ctx, |dock| dock.docked.clone_from(titles));
+}
+
+/// Keeps room beside the picture, if a docked tool is open.
+pub(in crate::app) fn reserve(ui: &mut Ui) {
+    let is_needed = change(ui.ctx(), |dock| {
+        dock.before = std::mem::take(&mut dock.now);
+        (dock.area, dock.is_hidden) = (None, false);
+        !dock.before.is_empty()
+    });
+    if !is_needed {
+        return;
+    }
+    let most = (ui.available_width() - PICTURE).max(NARROWEST);
+    let panel = Panel::left("dock").resizable(true).default_size(WIDTH.min(most));
+    let panel = panel.size_range(NARROWEST..=most).frame(theme::panel(ui));
+    let area = panel.show(ui, |ui| ui.allocate_rect(ui.available_rect_before_wrap(), Sense::hover()).rect);
+    change(ui.ctx(), |dock| dock.area = Some(area.inner));
+}
+
+/// Hides the dock with all that is in it: there is nothing but the picture.
+pub(in crate::app) fn hide(ctx: &egui::Context) {
+    change(ctx, |dock| {
+        dock.now.clear();
+        (dock.area, dock.is_hidden) = (None, true);
+    });
+}
+
+/// A tool.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::app) struct Tool {
+    /// What it is called, and known by.
+    pub title: &'static str,
+    /// Where its window is at first.
+    pub default_pos: [f32; 2],
+    /// How wide its contents are at first.
+    pub default_width: f32,
+}
+
+impl Tool {
+    /// Shows the tool while it is open.
+    pub(in crate::app) fn show(self, ctx: &egui::Context, open: &mut bool, add: impl FnOnce(&mut Ui)) {
+        if !*open {
+            return;
+        }
+        if change(ctx, |dock| dock.docked.contains(self.title)) {
+            self.show_docked(ctx, open, add);
+        } else {
+            self.show_floating(ctx, open, add);
+        }
+    }
+
+    fn show_floating(self, ctx: &egui::Context, open: &mut bool, add: impl FnOnce(&mut Ui)) {
+        let window = egui::Window::new(self.title).open(open).collapsible(false).resizable(true);
+        let window = window.constrain_to(frame::room(ctx)).default_pos(self.default_pos);
+        let shown = window.default_width(self.default_width).show(ctx, add);
+        let Some(shown) = shown else { return };
+        *open &= !frame::is_left(ctx, Some(&shown.response));
+        // Beside the button that closes it.
+        let whole = shown.response.rect;
+        let middle = pos2(whole.right() - CLOSE - 12.0, whole.top() + 0.5 * HEADER + 2.0);
+        let builder = UiBuilder::new().layer_id(shown.response.layer_id).max_rect(whole);
+        let ui = Ui::new(ctx.clone(), Id::unique((self.title, "title")), builder);
+        if sign(&ui, Rect::from_center_size(middle, vec2(20.0, 18.0)), text::dock::dock(self.title), true) {
+            change(ctx, |dock| dock.docked.insert(self.title.to_owned()));
+            ctx.request_repaint();
+        }
+    }
+
+    fn show_docked(self, ctx: &egui::Context, open: &mut bool, add: impl FnOnce(&mut Ui)) {
+        if change(ctx, |dock| dock.is_hidden) {
+            return;
+        }
+        let (area, at, count) = change(ctx, |dock| {
+            dock.now.push(self.title);
+            let at = dock.before.iter().position(|title| *title == self.title);
+            (dock.area, at, dock.before.len())
+        });
+        let Some((area, at)) = area.zip(at) else {
+            // Room is made in the next frame.
+            return ctx.request_repaint();
+        };
+        let height = area.height() / count.max(1) as f32;
+        let top = area.top() + at as f32 * height;
+        let place =
+            Rect::from_min_size(pos2(area.left(), top), vec2(area.width(), height)).shrink2(vec2(2.0, 1.0));
+        let builder = UiBuilder::new().layer_id(LayerId::background()).max_rect(place);
+        let mut ui = Ui::new(ctx.clone(), Id::unique((self.title, "docked")), builder);
+        ui.set_clip_rect(place);
+        ui.horizontal(|ui| {
+            ui.set_height(HEADER - 6.0);
+            ui.label(RichText::new(self.title).strong());
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                if ui.small_button(text::dock::CLOSE).clicked() {
+                    *open = false;
+                }
+                let (rect, _) = ui.allocate_exact_size(vec2(20.0, 18.0), Sense::hover());
+                if sign(ui, rect, text::dock::float(self.title), false) {
+                    change(ctx, |dock| dock.docked.remove(self.title));
+                    ctx.request_repaint();
+                }
+            });
+        });
+        ui.separator();
+        let scroll = egui::ScrollArea::both().id_salt((self.title, "contents")).auto_shrink(false);
+        scroll.show(&mut ui, add);
+    }
+}
+
+/// A button with a window whose left part is filled, if it docks, or empty; whether it was clicked.
+fn sign(ui: &Ui, area: Rect, name: String, docks: bool) -> bool {
+    let response = ui.interact(area, ui.scope_id().with(("dock", docks)), Sense::click());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+    let lit = response.hovered() || response.has_focus();
+    let ink = if lit { theme::accent(ui.visuals()) } else { ui.visuals().weak_text_color() };
+    let frame = Rect::from_center_size(area.center(), vec2(14.0, 11.0));
+    let painter = ui.painter();
+    painter.rect_stroke(frame, 2.0, Stroke::new(1.2, ink), egui::StrokeKind::Inside);
+    if docks {
+        let left = Rect::from_min_max(frame.min, pos2(frame.left() + 5.0, frame.bottom()));
+        painter.rect_filled(left, 1.0, ink);
+    }
+    response.on_hover_text(&name).on_hover_cursor(CursorIcon::PointingHand).clicked()
+}

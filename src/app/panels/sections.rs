@@ -1,0 +1,106 @@
+//! What of the side panel's sections is on, and what their reset buttons put back.
+
+use crate::app::text::sections::{
+    CAMERA, COMPARE, CUTS, DATA, FLOOR, LABELS, LIGHTS, SHADING, SHADOWS, SOFT_LIGHT,
+};
+use crate::model::{Settings, Shadows};
+
+/// Whether something is on in a section that usually is off, so that its header shows it.
+pub(super) fn is_active(title: &str, settings: &Settings, compares: bool) -> bool {
+    match title {
+        SOFT_LIGHT => settings.sky.is_on() || settings.has_bounces(),
+        CUTS => settings.cuts.crop.on || settings.cuts.plane.on,
+        FLOOR => settings.floor.on,
+        COMPARE => compares,
+        DATA => !settings.volume.is_none(),
+        _ => false,
+    }
+}
+
+/// Puts the settings of a section back to what they were at first; sections that belong to the file, or that show two
+/// looks, have nothing to put back.
+pub(super) fn put_back(title: &str, settings: &mut Settings, first: &Settings) {
+    let first = first.clone();
+    match title {
+        LABELS => settings.labels = first.labels,
+        LIGHTS => settings.lights = first.lights,
+        SHADOWS => {
+            // The balance is measured, and not set.
+            let Shadows { balance, keep_balanced, .. } = settings.shadows;
+            settings.shadows = Shadows { balance, keep_balanced, ..first.shadows };
+            (settings.lighting, settings.opacity_unit) = (first.lighting, first.opacity_unit);
+        }
+        SOFT_LIGHT => (settings.sky, settings.scattering) = (first.sky, first.scattering),
+        SHADING => (settings.shading, settings.output) = (first.shading, first.output),
+        CUTS => settings.cuts = first.cuts,
+        FLOOR => settings.floor = first.floor,
+        CAMERA => {
+            settings.sampling = first.sampling;
+            settings.camera.projection = first.camera.projection;
+            settings.camera.fov_y_deg = first.camera.fov_y_deg;
+            settings.camera.roll_deg = first.camera.roll_deg;
+            // As the object stands now.
+            if first.camera.up == settings.camera.up {
+                settings.camera = first.camera;
+            }
+        }
+        _ => {}
+    }
+}
+
+/// Whether a section has anything to put back.
+pub(super) fn differs(title: &str, settings: &Settings, first: &Settings) -> bool {
+    match title {
+        DATA | COMPARE => false,
+        _ => {
+            let mut back = settings.clone();
+            put_back(title, &mut back, first);
+            back != *settings
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::text;
+    use crate::model::Light;
+
+    #[test]
+    fn a_section_is_put_back_and_no_other_changes() {
+        let first = Settings::default();
+        let mut settings = first.clone();
+        settings.lights.push(Light::default());
+        settings.floor.on = true;
+        settings.shadows.gain = 2.0;
+        settings.shadows.balance = 1.5;
+        settings.cuts.plane.on = true;
+        settings.camera.azimuth_deg = 12.0;
+        settings.shading.diffuse = 0.1;
+        settings.sky.mode = crate::model::SkyMode::White;
+        settings.labels.entry(3).visible = false;
+        let changed = [LABELS, LIGHTS, SHADOWS, SOFT_LIGHT, SHADING, CUTS, FLOOR, CAMERA];
+        for title in text::sections::ALL {
+            assert_eq!(differs(title, &settings, &first), changed.contains(&title), "{title}");
+        }
+        for (at, title) in changed.into_iter().enumerate() {
+            put_back(title, &mut settings, &first);
+            for later in &changed[at + 1..] {
+                assert!(differs(later, &settings, &first), "{title} puts {later} back");
+            }
+        }
+        assert_eq!(settings.shadows.balance, 1.5, "what is measured stays");
+        assert_eq!(Settings { shadows: first.shadows.clone(), ..settings }, first);
+    }
+
+    #[test]
+    fn headers_show_what_is_on() {
+        let mut settings = Settings::default();
+        assert!(text::sections::ALL.iter().all(|title| !is_active(title, &settings, false)));
+        settings.floor.on = true;
+        settings.cuts.crop.on = true;
+        let on: Vec<_> =
+            text::sections::ALL.into_iter().filter(|title| is_active(title, &settings, true)).collect();
+        assert_eq!(on, [CUTS, FLOOR, COMPARE]);
+    }
+}
