@@ -154,3 +154,33 @@ fn points_are_selected_and_changed_together() {
     assert!(harness.query_by_label("Level").is_some(), "nothing is selected");
     wait_until_idle(&mut harness);
 }
+
+#[test]
+fn a_curve_is_drawn_by_hand() {
+    let mut harness = window();
+    let before = harness.state().settings().transfer.clone();
+    click(&mut harness, "Draw");
+    let plot = harness.get_by_label("Transfer function plot").rect();
+    let from = plot.left_center() + vec2(120.0, 30.0);
+    drag(&mut harness, from, vec2(260.0, -50.0));
+    let drawn = harness.state().settings().transfer.clone();
+    assert!(drawn != before && drawn.points.len() <= before.points.len() + 20, "{drawn:?}");
+    // One step, and Escape ends drawing.
+    harness.run_steps(8);
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+    harness.run_steps(3);
+    assert_eq!(harness.state().settings().transfer, before);
+    harness.hover_at(plot.center());
+    harness.step();
+    harness.key_press(egui::Key::Escape);
+    harness.run_steps(2);
+    let empty = plot.left_top() + vec2(30.0, 30.0);
+    drag(&mut harness, empty, Vec2::ZERO);
+    harness.run_steps(2);
+    assert_eq!(
+        harness.state().settings().transfer.points.len(),
+        before.points.len() + 1,
+        "points are added again"
+    );
+    wait_until_idle(&mut harness);
+}

@@ -26,15 +26,10 @@ pub(crate) const FADE_S: f32 = 0.25;
 
 /// What is selected or active.
 pub(crate) const ACCENT: Color32 = Color32::from_rgb(0xe9, 0xae, 0x4a);
-/// The lighting curve.
-pub(crate) const LIGHT_CURVE: Color32 = Color32::from_rgb(0xff, 0xc1, 0x4d);
-/// The eye's curve, over its colours.
+/// What is written over pictures, whatever the colours of the window.
 pub(crate) const EYE_CURVE: Color32 = Color32::from_rgb(0xe8, 0xec, 0xf2);
-/// Histogram bars.
+/// What is little of something, in bars of the side panel.
 pub(crate) const HISTOGRAM: Color32 = Color32::from_rgb(0x4a, 0x52, 0x60);
-/// The two fields of the checkerboard behind colours.
-pub(crate) const CHECKER: [Color32; 2] =
-    [Color32::from_rgb(0x22, 0x25, 0x2b), Color32::from_rgb(0x2b, 0x2f, 0x36)];
 /// Edge of a field of the checkerboard.
 pub(crate) const CHECKER_EDGE: f32 = 8.0;
 /// The axes of the grid, x, y and z.
@@ -51,6 +46,45 @@ pub(crate) const GUIDE: Color32 = Color32::from_rgb(0xc9, 0xd2, 0xe0);
 pub(crate) const BLOCKED: Color32 = Color32::from_rgb(0xf0, 0x5a, 0x4a);
 /// Behind the picture while there is none.
 pub(crate) const EMPTY_CANVAS: Color32 = Color32::from_rgb(0x1b, 0x1e, 0x24);
+
+/// The inks of the transfer function's plot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PlotInk {
+    /// The two fields of the checkerboard behind colours.
+    pub checker: [Color32; 2],
+    /// Histogram bars.
+    pub histogram: Color32,
+    /// The eye's curve, over its colours, and numbers.
+    pub eye: Color32,
+    /// The lighting curve.
+    pub light: Color32,
+    /// Behind numbers, and around points.
+    pub ground: Color32,
+}
+
+impl PlotInk {
+    /// Those of a dark window.
+    pub(crate) const DARK: Self = Self {
+        checker: [Color32::from_rgb(0x22, 0x25, 0x2b), Color32::from_rgb(0x2b, 0x2f, 0x36)],
+        histogram: HISTOGRAM,
+        eye: EYE_CURVE,
+        light: Color32::from_rgb(0xff, 0xc1, 0x4d),
+        ground: OUTLINE,
+    };
+    /// Those of a light one: each with at least the contrast that the dark one has.
+    const LIGHT: Self = Self {
+        checker: [Color32::from_rgb(0xf6, 0xf7, 0xf9), Color32::from_rgb(0xe7, 0xe9, 0xee)],
+        histogram: Color32::from_rgb(0xb3, 0xbb, 0xc8),
+        eye: Color32::from_rgb(0x20, 0x26, 0x30),
+        light: Color32::from_rgb(0xa8, 0x5c, 0x00),
+        ground: Color32::from_rgb(0xff, 0xff, 0xff),
+    };
+
+    /// Those of a window.
+    pub(crate) fn of(visuals: &egui::Visuals) -> Self {
+        if visuals.dark_mode { Self::DARK } else { Self::LIGHT }
+    }
+}
 
 /// The frame of a panel, through which the background of the window is seen: that is filled at once and cheaply.
 pub(crate) fn panel(ui: &egui::Ui) -> egui::Frame {

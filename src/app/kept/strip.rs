@@ -139,8 +139,7 @@ impl Strip {
         let size = size_for(HEIGHT);
         let (whole, response) = ui.allocate_exact_size(size + vec2(0.0, NAME), Sense::click_and_drag());
         let is_look = kept.as_look().is_some();
-        response
-            .widget_info(|| WidgetInfo::labeled(Role::Button, true, text::kept::go_to(&kept.name, is_look)));
+        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, text::kept::go_to(&kept.name)));
         let picture = Rect::from_min_size(whole.min, size);
         let painter = ui.painter_at(whole.expand(3.0));
         painter.rect_filled(picture, 3.0, theme::EMPTY_CANVAS);

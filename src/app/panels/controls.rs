@@ -120,6 +120,17 @@ pub(super) fn choice<T: PartialEq + Copy>(
     value: &mut T,
     options: &[(T, Named)],
 ) -> bool {
+    choice_with(ui, named, value, options, |_| None)
+}
+
+/// One of a few values, side by side; what more there is to say of each.
+pub(super) fn choice_with<T: PartialEq + Copy>(
+    ui: &mut Ui,
+    named: Named,
+    value: &mut T,
+    options: &[(T, Named)],
+    more: impl Fn(&T) -> Option<String>,
+) -> bool {
     row(ui, named, |ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         if options.len() > 3 {
@@ -130,8 +141,11 @@ pub(super) fn choice<T: PartialEq + Copy>(
         // Long words take another row.
         ui.horizontal_wrapped(|ui| {
             for (option, of_option) in options {
-                let response =
+                let mut response =
                     ui.selectable_label(value == option, of_option.name).on_hover_text(of_option.tip);
+                if let Some(more) = more(option) {
+                    response = response.on_hover_text(more);
+                }
                 if response.clicked() && value != option {
                     *value = *option;
                     changed = true;

@@ -45,7 +45,9 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     }
     let room = panels.settings.lights.len() < MAX_LIGHTS;
     let button = ui.add_enabled(room, egui::Button::new(text::lights::ADD.name));
-    if button.on_hover_text(text::lights::ADD.tip).clicked() {
+    // What it costs is said before it is added.
+    let cost = panels.facts.light_cost().map(|cost| text::shadows::cost(cost.ms, cost.mebibytes));
+    if button.on_hover_text(text::lights::add_tip(cost.as_deref())).clicked() {
         panels.commands.push(Command::AddLight);
     }
 }

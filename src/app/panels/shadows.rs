@@ -4,7 +4,7 @@ use eframe::egui::{self, Ui};
 
 use super::super::text::common::TIMES;
 use super::super::text::{self, Named};
-use super::controls::{Number, advanced, choice, row, switch, unlabelled};
+use super::controls::{Number, advanced, choice, choice_with, row, switch, unlabelled};
 use super::{Panels, sampling};
 use crate::app::common::commands::Command;
 use crate::app::common::theme;
@@ -81,7 +81,13 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
         let default = panels.defaults.shadows.transmission;
         transmission.show(ui, &mut panels.settings.shadows.transmission, default);
         choice(ui, text::shadows::NEAR_FIELD, &mut panels.settings.shadows.near_field, &NEAR_FIELDS);
-        choice(ui, text::shadows::RESOLUTION, &mut panels.settings.shadows.resolution, &RESOLUTIONS);
+        let (before, cost) = (panels.settings.shadows.resolution, panels.facts.light_cost());
+        let cost_of = |resolution: &Resolution| {
+            let cost = cost?.finer(before.divisor() as f64 / resolution.divisor() as f64);
+            Some(text::shadows::volume_cost(&text::shadows::cost(cost.ms, cost.mebibytes)))
+        };
+        let resolution = &mut panels.settings.shadows.resolution;
+        choice_with(ui, text::shadows::RESOLUTION, resolution, &RESOLUTIONS, cost_of);
         advanced(ui, "advanced shadows", |ui| {
             let combines = panels.settings.combines_lights();
             let shadows = &mut panels.settings.shadows;

@@ -208,7 +208,7 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
         }
         for (at, kept) in menu.settings.kept.iter().enumerate() {
             let key = kept.digit.map(text::kept::key).unwrap_or_default();
-            let name = text::kept::go_to(&kept.name, kept.as_look().is_some());
+            let name = text::kept::go_to(&kept.name);
             if ui.add(Button::new(name).shortcut_text(key)).clicked() {
                 menu.commands.push(Command::GoToKept(at, false));
             }

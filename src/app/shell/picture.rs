@@ -60,6 +60,9 @@ pub(crate) struct PictureInputs<'a> {
     pub commands: &'a mut Vec<Command>,
 }
 
+/// Points at the edge of the picture that are the panels' borders.
+const BORDER: f32 = 4.0;
+
 /// Shows the picture and everything that is done with the mouse on it.
 pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Result<(), GpuError>) {
     let PictureInputs {
@@ -82,7 +85,11 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
         commands,
     } = inputs;
     let canvas = Canvas::within(ui.available_rect_before_wrap(), ui.pixels_per_point());
-    let response = ui.allocate_rect(canvas.rect, Sense::click_and_drag());
+    ui.allocate_rect(canvas.rect, Sense::hover());
+    // The borders of panels are taken from both of their sides.
+    let inside = canvas.rect.shrink(BORDER);
+    let mut response = ui.interact(inside, ui.scope_id().with("picture"), Sense::click_and_drag());
+    response.rect = canvas.rect;
     response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, text::picture::PICTURE));
     let Some(&VolumeFacts { scene, is_anatomical, has_unknown_scale, .. }) = volume else {
         ui.painter().rect_filled(canvas.rect, 0.0, theme::EMPTY_CANVAS);
@@ -175,7 +182,7 @@ impl App {
             probe: &mut self.probe,
             orbit: &mut self.orbit,
             outline: outline.as_deref(),
-            shape: self.export.shape(),
+            shape: self.export.shape().filter(|_| !self.layout.picture_only),
             slices: &mut self.slices,
             hints: &mut self.hints,
             volume: self.volume.as_ref(),

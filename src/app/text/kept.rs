@@ -23,8 +23,8 @@ pub(crate) const DIGIT: &str = "Key";
 pub(crate) const NO_ROOM: &str = "No more can be kept: remove a view or a look first";
 
 /// What a small picture is called.
-pub(crate) fn go_to(name: &str, is_look: bool) -> String {
-    format!("{} {name}", if is_look { "Look" } else { "View" })
+pub(crate) fn go_to(name: &str) -> String {
+    format!("Go to {name}")
 }
 
 /// What a click does.

@@ -87,3 +87,4 @@ pub(crate) fn at_pointer(value: &str, opacity: f64) -> String {
 /// Draws a curve by hand.
 pub(crate) const FREEHAND: Named =
     named("Draw", "Draw the curve by hand: a stroke becomes few points. Escape ends it");
+pub(crate) const DRAW_HINT: &str = "Drag to draw; Escape takes a stroke back, and then ends drawing";

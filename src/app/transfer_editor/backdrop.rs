@@ -118,9 +118,9 @@ fn compose(key: &Key, pixels_per_point: f32) -> Vec<u8> {
             let above_floor = floor - canvas.rect.min.y - point(row);
             let field =
                 (point(column) / theme::CHECKER_EDGE) as usize + (point(row) / theme::CHECKER_EDGE) as usize;
-            let mut color = theme::CHECKER[1 - field % 2];
+            let mut color = axes.ink.checker[1 - field % 2];
             if (0.0..bar).contains(&above_floor) {
-                color = theme::HISTOGRAM;
+                color = axes.ink.histogram;
             }
             if (0.0..curve).contains(&above_floor) {
                 color = color.blend(fill);
@@ -142,7 +142,8 @@ mod tests {
     #[test]
     fn bars_and_colours_stand_on_the_floor() {
         let area = Rect::from_min_size(pos2(3.0, 400.0), vec2(116.0, 64.0));
-        let axes = Axes::new(area, ShownValues { low: 0.0, high: 10.0, is_whole: true });
+        let axes =
+            Axes::new(area, ShownValues { low: 0.0, high: 10.0, is_whole: true }, theme::PlotInk::DARK);
         let bars = Bars {
             range: ValueRange::new(0.0, 10.0),
             counts: vec![0, 8, 4, 0, 0, 0, 0, 0, 0, 0],
@@ -159,9 +160,9 @@ mod tests {
             let pixel = place.y as usize * 116 + place.x as usize;
             Color32::from_rgb(picture[4 * pixel], picture[4 * pixel + 1], picture[4 * pixel + 2])
         };
-        let is_checker = |color| theme::CHECKER.contains(&color);
-        assert_eq!(at(1.5, 0.9), theme::HISTOGRAM);
-        assert_eq!(at(2.5, 0.4), theme::HISTOGRAM);
+        let is_checker = |color| theme::PlotInk::DARK.checker.contains(&color);
+        assert_eq!(at(1.5, 0.9), theme::PlotInk::DARK.histogram);
+        assert_eq!(at(2.5, 0.4), theme::PlotInk::DARK.histogram);
         assert!(is_checker(at(2.5, 0.6)), "the bar is half as tall");
         assert!(is_checker(at(0.5, 0.9)) && is_checker(at(5.5, 0.1)), "nothing is there");
         assert_eq!(at(7.5, 0.1), Color32::WHITE);

@@ -32,7 +32,8 @@ impl Freehand {
         let painter = ui.painter_at(axes.area);
         for point in &function.points {
             let at = axes.position(point.value, point.opacity);
-            plot::point(&painter, at, 0.7 * theme::POINT_RADIUS, theme::color(point.color), false);
+            let small = 0.7 * theme::POINT_RADIUS;
+            plot::point(&painter, &axes.ink, (at, small), theme::color(point.color), false);
         }
         let is_left = (response.contains_pointer() || self.before.is_some())
             && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
@@ -47,6 +48,9 @@ impl Freehand {
         if response.drag_started_by(egui::PointerButton::Primary) {
             self.before = Some(function.clone());
             self.stroke.clear();
+            // Where the button was pressed: a drag begins some points further.
+            let origin = ui.input(|input| input.pointer.press_origin()).map(|at| axes.values(at));
+            self.stroke.extend(origin.map(|(value, opacity)| [value, opacity]));
         }
         if let (Some(before), Some(at)) = (&self.before, response.interact_pointer_pos()) {
             let (value, opacity) = axes.values(at);

@@ -124,7 +124,7 @@ impl TransferEditor {
         let (area, response) = ui.allocate_exact_size(size.max(Vec2::splat(20.0)), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, text::transfer::PLOT));
         self.zoom.ui(ui, &response, area, span);
-        let axes = Axes::new(area, self.zoom.shown(span));
+        let axes = Axes::new(area, self.zoom.shown(span), theme::PlotInk::of(ui.visuals()));
         self.paint(ui, &axes, settings, volume);
         let name =
             if self.curve == Curve::Light { text::transfer::LIGHT_POINT } else { text::transfer::EYE_POINT };
@@ -177,7 +177,8 @@ impl TransferEditor {
             let draw = text::transfer::FREEHAND;
             ui.toggle_value(&mut self.freehand.on, draw.name).on_hover_text(draw.tip);
             if is_wide {
-                ui.add(egui::Label::new(egui::RichText::new(text::transfer::HINT).weak()).truncate());
+                let hint = if self.freehand.on { text::transfer::DRAW_HINT } else { text::transfer::HINT };
+                ui.add(egui::Label::new(egui::RichText::new(hint).weak()).truncate());
             }
         } else if fields::points(
             ui,
@@ -312,8 +313,11 @@ impl TransferEditor {
             let point = function.points[index];
             plot::point(
                 &painter,
-                axes.position(point.value, point.opacity),
-                theme::POINT_RADIUS + if response.hovered() { 1.0 } else { 0.0 },
+                &axes.ink,
+                (
+                    axes.position(point.value, point.opacity),
+                    theme::POINT_RADIUS + if response.hovered() { 1.0 } else { 0.0 },
+                ),
                 theme::color(point.color),
                 selected || response.has_focus(),
             );

@@ -5,7 +5,7 @@ use eframe::egui::{
 };
 
 use super::text;
-use super::theme;
+use super::theme::{self, PlotInk};
 use super::zoom::ShownValues;
 use crate::app::common::volume_facts::decimals;
 use crate::data::Histogram;
@@ -27,15 +27,17 @@ pub(super) struct Axes {
     /// Whether all of the volume's values are shown.
     is_whole: bool,
     plot: Rect,
+    /// What everything is painted with.
+    pub ink: PlotInk,
 }
 
 impl Axes {
     /// Axes over an area.
-    pub(super) fn new(area: Rect, shown: ShownValues) -> Self {
+    pub(super) fn new(area: Rect, shown: ShownValues, ink: PlotInk) -> Self {
         let ShownValues { low, high, is_whole } = shown;
         // A volume with a single value still needs an axis.
         let range = ValueRange::new(low, if high > low { high } else { low + 1.0 });
-        Self { area, range, is_whole, plot: area.shrink2(MARGIN) }
+        Self { area, range, is_whole, plot: area.shrink2(MARGIN), ink }
     }
 
     /// Where a value and an opacity are.
@@ -109,7 +111,7 @@ pub(super) fn bars(histogram: &Histogram, levels: Option<usize>, width: f32) -> 
 pub(super) fn eye_curve(painter: &Painter, axes: &Axes, function: &TransferFunction, edited: bool) {
     let line = axes.samples().map(|(x, value)| pos2(x, axes.y(function.opacity_at(value)))).collect();
     let strength = if edited { 1.0 } else { 0.5 };
-    painter.add(Shape::line(line, Stroke::new(1.5, theme::EYE_CURVE.gamma_multiply(strength))));
+    painter.add(Shape::line(line, Stroke::new(1.5, axes.ink.eye.gamma_multiply(strength))));
 }
 
 /// The lighting curve: a line, dashed while it follows the eye's.
@@ -120,7 +122,7 @@ pub(super) fn light_curve(painter: &Painter, axes: &Axes, settings: &Settings, e
     // The scale multiplies the extinction, not the opacity.
     let scaled = |value: f64| 1.0 - (-function.at(value).1 * scale).exp();
     let line: Vec<Pos2> = axes.samples().map(|(x, value)| pos2(x, axes.y(scaled(value)))).collect();
-    let stroke = Stroke::new(if edited { 2.0 } else { 1.2 }, theme::LIGHT_CURVE);
+    let stroke = Stroke::new(if edited { 2.0 } else { 1.2 }, axes.ink.light);
     if linked {
         painter.extend(Shape::dashed_line(&line, stroke, 5.0, 5.0));
     } else {
@@ -130,10 +132,10 @@ pub(super) fn light_curve(painter: &Painter, axes: &Axes, settings: &Settings, e
 
 /// The ends of the axes.
 pub(super) fn labels(painter: &Painter, axes: &Axes) {
-    let (font, ink) = (FontId::proportional(11.0), theme::EYE_CURVE.gamma_multiply(0.75));
+    let ink = axes.ink.eye.gamma_multiply(0.75);
     let plot = axes.plot;
     let write = |at: Pos2, align: Align2, text: String| {
-        over_anything(painter, at, align, text, &font, ink);
+        over_anything(painter, axes, (at, align), text, ink);
     };
     write(plot.left_bottom(), Align2::LEFT_BOTTOM, number(axes.range.low, axes.range));
     write(plot.right_bottom(), Align2::RIGHT_BOTTOM, number(axes.range.high, axes.range));
@@ -147,9 +149,15 @@ fn number(value: f64, range: ValueRange) -> String {
 }
 
 /// A control point.
-pub(super) fn point(painter: &Painter, at: Pos2, radius: f32, color: Color32, selected: bool) {
-    painter.circle_filled(at, radius + 1.5, theme::OUTLINE);
-    let ring = if selected { theme::ACCENT } else { theme::EYE_CURVE };
+pub(super) fn point(
+    painter: &Painter,
+    ink: &PlotInk,
+    (at, radius): (Pos2, f32),
+    color: Color32,
+    selected: bool,
+) {
+    painter.circle_filled(at, radius + 1.5, ink.ground);
+    let ring = if selected { theme::ACCENT } else { ink.eye };
     painter.circle(at, radius, color, Stroke::new(if selected { 2.0 } else { 1.5 }, ring));
 }
 
@@ -158,21 +166,21 @@ pub(super) fn readout(ui: &Ui, axes: &Axes, response: &Response, settings: &Sett
     let Some(at) = response.hover_pos() else { return };
     let (value, _) = axes.values(at);
     let painter = ui.painter_at(axes.area);
-    let line = Stroke::new(1.0, theme::EYE_CURVE.gamma_multiply(0.35));
+    let line = Stroke::new(1.0, axes.ink.eye.gamma_multiply(0.35));
     painter.vline(at.x, egui::Rangef::new(axes.plot.min.y, axes.plot.max.y), line);
     let opacity = settings.transfer.opacity_at(value);
     let words = text::transfer::at_pointer(&number(value, axes.range), opacity);
     let right = at.x < axes.area.center().x;
     let (align, dx) = if right { (Align2::LEFT_TOP, 6.0) } else { (Align2::RIGHT_TOP, -6.0) };
     let place = pos2(at.x + dx, axes.plot.min.y + 14.0);
-    over_anything(&painter, place, align, words, &FontId::proportional(11.0), theme::EYE_CURVE);
+    over_anything(&painter, axes, (place, align), words, axes.ink.eye);
 }
 
-/// Writes on a dark ground of its own: curves and what fills them have any colour.
-fn over_anything(painter: &Painter, at: Pos2, align: Align2, text: String, font: &FontId, ink: Color32) {
-    let galley = painter.layout_no_wrap(text, font.clone(), ink);
+/// Writes on a ground of its own: curves and what fills them have any colour.
+fn over_anything(painter: &Painter, axes: &Axes, (at, align): (Pos2, Align2), text: String, ink: Color32) {
+    let galley = painter.layout_no_wrap(text, FontId::proportional(11.0), ink);
     let area = align.anchor_size(at, galley.size());
-    painter.rect_filled(area.expand2(Vec2::new(3.0, 1.0)), 3.0, theme::OUTLINE.gamma_multiply(0.75));
+    painter.rect_filled(area.expand2(Vec2::new(3.0, 1.0)), 3.0, axes.ink.ground.gamma_multiply(0.75));
     painter.galley(area.min, galley, ink);
 }
 
@@ -197,13 +205,14 @@ mod tests {
         let axes = Axes::new(
             Rect::from_min_size(pos2(7.0, 400.0), vec2(900.0, 120.0)),
             ShownValues { low: -1000.0, high: 3000.0, is_whole: true },
+            PlotInk::DARK,
         );
         let at = axes.position(250.0, 0.37);
         let (value, opacity) = axes.values(at);
         assert!((value - 250.0).abs() < 0.5 && (opacity - 0.37).abs() < 1e-3, "{value} {opacity}");
         assert_eq!(axes.values(pos2(-50.0, 9000.0)), (-1000.0, 0.0));
         assert!(
-            Axes::new(axes.area, ShownValues { low: 5.0, high: 5.0, is_whole: true })
+            Axes::new(axes.area, ShownValues { low: 5.0, high: 5.0, is_whole: true }, PlotInk::DARK)
                 .position(5.0, 0.0)
                 .x
                 .is_finite()

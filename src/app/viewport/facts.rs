@@ -56,6 +56,39 @@ pub(in crate::app) struct Facts {
     pub doing: Doing,
 }
 
+/// What a light volume costs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::app) struct LightCost {
+    /// Milliseconds until it is filled, where that was measured.
+    pub ms: Option<f64>,
+    /// Mebibytes that it takes.
+    pub mebibytes: f64,
+}
+
+impl LightCost {
+    /// At another resolution: voxels that are so many times as fine along each axis.
+    pub(in crate::app) fn finer(self, times: f64) -> Self {
+        let voxels = times.powi(3);
+        Self { ms: self.ms.map(|ms| ms * voxels), mebibytes: self.mebibytes * voxels }
+    }
+}
+
+impl Facts {
+    /// What one more light that casts shadows would cost, as the dearest does that there is; none where nothing was
+    /// measured.
+    pub(in crate::app) fn light_cost(&self) -> Option<LightCost> {
+        let figures = self.light_volumes.iter().flatten().filter(|figures| figures.complete);
+        let cost = |figures: &LightFigures| LightCost {
+            ms: figures.fill_ms,
+            mebibytes: figures.bytes as f64 / f64::from(1 << 20),
+        };
+        figures.map(cost).max_by(|a, b| {
+            let ms = |cost: &LightCost| cost.ms.unwrap_or_default();
+            ms(a).total_cmp(&ms(b)).then(a.mebibytes.total_cmp(&b.mebibytes))
+        })
+    }
+}
+
 impl Viewport {
     /// Figures about the renderer.
     pub(in crate::app) fn facts(&self, looks: &Looks) -> Facts {
@@ -99,5 +132,17 @@ impl Viewport {
         } else {
             refining.map_or(Doing::Preview, |(stage, share)| Doing::Refining(stage, share))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finer_volumes_cost_as_many_times_more_as_they_have_voxels() {
+        let half = LightCost { ms: Some(10.0), mebibytes: 2.0 };
+        assert_eq!(half.finer(2.0), LightCost { ms: Some(80.0), mebibytes: 16.0 });
+        assert_eq!(LightCost { ms: None, ..half }.finer(0.5), LightCost { ms: None, mebibytes: 0.25 });
     }
 }

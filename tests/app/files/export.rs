@@ -88,7 +88,7 @@ fn turntables_and_copies_come_from_the_window() {
         std::fs::read(path.with_extension("gif")).unwrap(),
     ));
     assert_eq!(image::AnimationDecoder::into_frames(gif.unwrap()).count(), 72);
-    click(&mut harness, "One file per picture");
+    click(&mut harness, "Image sequence");
     // So large that nobody waits for all of them.
     click(&mut harness, "1920 × 1080");
     click(&mut harness, "Export");

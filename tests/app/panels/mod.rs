@@ -1,6 +1,7 @@
 //! Controls in the panels, and what they change in the picture.
 
 mod labels;
+mod layout;
 mod side;
 mod surroundings;
 

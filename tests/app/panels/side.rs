@@ -83,6 +83,6 @@ fn steps_of_the_history_have_names() {
     assert_eq!(harness.state().latest_note(), Some("Undone: floor"));
     harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     harness.run_steps(3);
-    assert_eq!(harness.state().latest_note(), Some("Done again: floor"));
+    assert_eq!(harness.state().latest_note(), Some("Redone: floor"));
     wait_until_idle(&mut harness);
 }

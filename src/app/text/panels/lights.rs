@@ -130,3 +130,11 @@ pub(crate) fn hood_handle(name: &str) -> String {
 pub(crate) fn size_handle(name: &str) -> String {
     format!("Size handle {name}")
 }
+
+/// What adding a light does, and what one more that casts shadows costs: as the dearest of those that there are.
+pub(crate) fn add_tip(cost: Option<&str>) -> String {
+    match cost {
+        Some(cost) => format!("{}\nIts shadows take about {cost}", ADD.tip),
+        None => ADD.tip.to_owned(),
+    }
+}

@@ -141,3 +141,18 @@ pub(crate) fn light_volumes(mebibytes: f64, shared: bool) -> String {
     let kind = if shared { "one for all lights" } else { "one for each light" };
     format!("Light volumes: {mebibytes:.1} MiB, {kind}")
 }
+
+/// What a light volume takes.
+pub(crate) fn volume_cost(cost: &str) -> String {
+    format!("Each light volume takes about {cost}")
+}
+
+/// Milliseconds, where they were measured, and mebibytes.
+pub(crate) fn cost(ms: Option<f64>, mebibytes: f64) -> String {
+    let memory = if mebibytes < 10.0 { format!("{mebibytes:.1} MiB") } else { format!("{mebibytes:.0} MiB") };
+    match ms {
+        Some(ms) if ms < 1.0 => format!("<1 ms, {memory}"),
+        Some(ms) => format!("{ms:.0} ms, {memory}"),
+        None => memory,
+    }
+}

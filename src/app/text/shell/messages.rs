@@ -63,7 +63,7 @@ pub(crate) fn wrote(path: &Path) -> String {
 
 /// A step back or forward was taken.
 pub(crate) fn went(is_back: bool, what: &str) -> String {
-    let verb = if is_back { "Undone" } else { "Done again" };
+    let verb = if is_back { "Undone" } else { "Redone" };
     format!("{verb}: {what}")
 }
 

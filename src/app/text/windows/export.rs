@@ -23,7 +23,7 @@ pub(crate) const STILL: Named = named("Picture", "What the window shows, at any 
 pub(crate) const TURNTABLE: Named =
     named("Turntable", "The camera goes once around the volume; the light stays");
 pub(crate) const LIGHT_TURN: Named =
-    named("Turning light", "The selected light goes once around the vertical axis");
+    named("Light turntable", "The selected light goes once around the vertical axis");
 
 /// Files for a picture.
 pub(crate) const PNG: Named = named("PNG", "For papers, slides and the web");
@@ -36,7 +36,7 @@ pub(crate) const EXR: Named =
 pub(crate) const APNG: Named = named("Animated PNG", "Every colour, and transparency; browsers show it");
 pub(crate) const GIF: Named = named("GIF", "256 colours; everything shows it");
 pub(crate) const MP4: Named = named("MP4", "A video for slides; needs ffmpeg on this computer");
-pub(crate) const FOLDER: Named = named("One file per picture", "A folder of PNG files, for video programs");
+pub(crate) const FOLDER: Named = named("Image sequence", "A folder of PNG files, for video programs");
 
 pub(crate) const SIZE: &str = "Size";
 pub(crate) const WIDTH: &str = "Width";
@@ -57,10 +57,10 @@ pub(crate) const SAMPLES: Named = named(
 );
 
 /// The length of a turntable.
-pub(crate) const TURN_PICTURES: &str = "Pictures of a turn";
-pub(crate) const TURN_PICTURES_UNIT: &str = " pictures";
+pub(crate) const TURN_PICTURES: &str = "Frames";
+pub(crate) const TURN_PICTURES_UNIT: &str = " frames";
 /// How fast a turntable goes by.
-pub(crate) const RATE: &str = "Pictures per second";
+pub(crate) const RATE: &str = "Frame rate";
 pub(crate) const RATE_UNIT: &str = " per second";
 
 pub(crate) const TRANSPARENT: Named =
@@ -97,7 +97,7 @@ pub(crate) fn parts_done(done: u32, total: u32) -> String {
 
 /// How far the export of a turntable is.
 pub(crate) fn pictures_done(done: u32, total: u32) -> String {
-    format!("{done} of {total} pictures")
+    format!("{done} of {total} frames")
 }
 
 /// The system is out of threads.

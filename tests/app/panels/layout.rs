@@ -1,0 +1,242 @@
+//! How the window is laid out: the picture alone, tools beside it, what is kept below it, steps and messages as lists.
+
+use chiaroscuro::app::App;
+use chiaroscuro::model::{Kept, Settings};
+use eframe::egui::{Key, Modifiers, Rect, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+use crate::harness::{click, drag, press, wait_until, wait_until_idle, window};
+
+fn picture_of(harness: &Harness<'_, App>) -> Rect {
+    harness.state().viewport_rect().expect("a picture").0
+}
+
+fn settings(harness: &Harness<'_, App>) -> Settings {
+    harness.state().settings().clone()
+}
+
+#[test]
+fn the_picture_can_be_alone() {
+    let mut harness = window();
+    let usual = picture_of(&harness);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Backslash);
+    harness.run_steps(3);
+    let alone = picture_of(&harness);
+    assert_eq!(alone, harness.ctx.content_rect(), "nothing else is there");
+    assert!(harness.query_by_label("File").is_none());
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    assert_eq!(picture_of(&harness), usual);
+    // One of the panels at a time.
+    harness.key_press_modifiers(Modifiers::SHIFT, Key::N);
+    harness.run_steps(12);
+    let higher = picture_of(&harness);
+    assert!(higher.height() > usual.height() + 100.0 && higher.width() == usual.width(), "{higher}");
+    wait_until_idle(&mut harness);
+}
+
+#[test]
+fn tools_are_docked_beside_the_picture_and_float_again() {
+    let mut harness = window();
+    let usual = picture_of(&harness);
+    harness.key_press(Key::D);
+    harness.run_steps(4);
+    assert_eq!(picture_of(&harness), usual, "a window hides, and takes no room");
+    click(&mut harness, "Dock Slices beside the picture");
+    harness.run_steps(4);
+    let beside = picture_of(&harness);
+    assert!(beside.left() > usual.left() + 200.0 && beside.right() == usual.right(), "{beside}");
+    let slice = harness.get_by_label("Slice across z").rect();
+    assert!(slice.right() <= beside.left(), "{slice} beside {beside}");
+    // The picture only hides it, too.
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Backslash);
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Slice across z").is_none());
+    harness.key_press(Key::Escape);
+    harness.run_steps(4);
+    assert_eq!(picture_of(&harness), beside);
+    click(&mut harness, "Make Slices a window");
+    harness.run_steps(4);
+    assert_eq!(picture_of(&harness), usual);
+    assert!(harness.query_by_label("Slice across z").is_some(), "and it is still open");
+    wait_until_idle(&mut harness);
+}
+
+#[test]
+fn views_and_looks_are_kept_named_moved_and_compared() {
+    let mut harness = window();
+    let first = settings(&harness);
+    harness.key_press_modifiers(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Num4);
+    harness.run_steps(4);
+    assert!(harness.query_by_label("Go to View 4").is_some(), "the strip is there");
+    click(&mut harness, "+ Look");
+    harness.key_press_modifiers(Modifiers::SHIFT, Key::G);
+    harness.key_press(Key::Num7);
+    wait_until_idle(&mut harness);
+    let turned = settings(&harness);
+    assert!(turned.floor.on != first.floor.on && turned.camera != first.camera);
+    click(&mut harness, "+ Look");
+    let names = |harness: &Harness<'_, App>| {
+        settings(harness).kept.iter().map(|kept| kept.name.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(names(&harness), ["View 4", "Look 1", "Look 2"]);
+    // A look leaves the view, and a view the look.
+    click(&mut harness, "Go to Look 1");
+    let back = settings(&harness);
+    assert_eq!((back.floor.on, &back.camera), (first.floor.on, &turned.camera));
+    click(&mut harness, "Go to View 4");
+    assert_eq!(settings(&harness).camera, first.camera);
+    assert_eq!(settings(&harness).kept.len(), 3, "what is kept stays");
+    // Two looks that are marked are compared.
+    for look in ["Go to Look 1", "Go to Look 2"] {
+        harness.get_by_label(look).click_modifiers(Modifiers::COMMAND);
+        harness.run_steps(3);
+    }
+    harness.run_steps(4);
+    wait_until_idle(&mut harness);
+    assert!(harness.query_by_label("Difference").is_some() || harness.query_by_label("Divider").is_some());
+    harness.key_press(Key::C);
+    wait_until_idle(&mut harness);
+    // The last one is dragged to the front, and that can be undone.
+    let from = harness.get_by_label("Go to Look 2").rect().center();
+    let to = harness.get_by_label("Go to View 4").rect().left_center();
+    drag(&mut harness, from, to - from);
+    harness.run_steps(4);
+    assert_eq!(names(&harness), ["Look 2", "View 4", "Look 1"]);
+    harness.run_steps(8);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(3);
+    assert_eq!(names(&harness), ["View 4", "Look 1", "Look 2"]);
+    assert!(settings(&harness).kept.iter().filter_map(Kept::as_look).count() == 2);
+    wait_until_idle(&mut harness);
+}
+
+#[test]
+fn steps_are_listed_and_gone_to() {
+    let mut harness = window();
+    let first = settings(&harness);
+    harness.key_press_modifiers(Modifiers::SHIFT, Key::G);
+    harness.run_steps(12);
+    harness.key_press(Key::Num7);
+    wait_until_idle(&mut harness);
+    harness.run_steps(12);
+    let last = settings(&harness);
+    click(&mut harness, "Edit");
+    harness.get_by_label_contains("History of steps").click();
+    harness.run_steps(4);
+    click(&mut harness, "Start");
+    harness.run_steps(4);
+    let start = settings(&harness);
+    assert_eq!((start.floor.on, &start.camera), (first.floor.on, &first.camera));
+    click(&mut harness, "2  view");
+    harness.run_steps(4);
+    assert_eq!(settings(&harness).camera, last.camera);
+    assert_eq!(settings(&harness).floor.on, last.floor.on);
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Start").is_none());
+    wait_until_idle(&mut harness);
+}
+
+#[test]
+fn what_was_said_is_listed_after_it_has_gone() {
+    let mut harness = window();
+    let ctx = harness.ctx.clone();
+    harness.state_mut().open("/no/such/volume.nrrd", &ctx);
+    wait_until(&mut harness, "no error", |app| !app.errors().is_empty());
+    harness.run_steps(4);
+    click(&mut harness, "Dismiss");
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Dismiss").is_none());
+    harness.get_by_label_contains(" message").click();
+    harness.run_steps(4);
+    assert!(harness.query_by_label_contains("there is no such file").is_some());
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    assert!(harness.query_by_label_contains("there is no such file").is_none());
+}
+
+#[test]
+fn the_probe_names_a_cause_offers_cures_and_measures() {
+    let mut harness = window();
+    let first = settings(&harness);
+    harness.key_press(Key::I);
+    let middle = picture_of(&harness).center();
+    harness.hover_at(middle);
+    harness.run_steps(4);
+    assert!(harness.query_by_label_contains("Click for what helps").is_some());
+    press(&mut harness, middle, 1);
+    harness.run_steps(4);
+    assert!(harness.query_by_label_contains("Click for what helps").is_none(), "it was clicked");
+    assert_eq!(settings(&harness), first, "asking changes nothing");
+    // A second place, a little further: how far they are apart.
+    let other = middle + vec2(-24.0, -10.0);
+    press(&mut harness, other, 1);
+    harness.run_steps(4);
+    assert!(harness.query_by_label_contains("from the place before").is_some());
+    harness.key_press(Key::Escape);
+    harness.remove_cursor();
+    harness.run_steps(4);
+    assert!(harness.query_by_label_contains("from the place before").is_none());
+    // With no light there is a cause and a cure for it.
+    harness.key_press(Key::M);
+    harness.run_steps(2);
+    for light in 0..harness.state().settings().lights.len() {
+        if harness.state().settings().lights[light].on {
+            harness.key_press(Key::Period);
+            harness.key_press(Key::M);
+            harness.run_steps(2);
+        }
+    }
+    press(&mut harness, middle, 1);
+    harness.run_steps(4);
+    assert!(harness.query_by_label("Dark: no light is on").is_some());
+    click(&mut harness, "Switch it on");
+    assert!(settings(&harness).lights[0].on);
+    harness.key_press(Key::I);
+    wait_until_idle(&mut harness);
+}
+
+#[test]
+fn a_section_says_that_it_is_on_and_is_put_back() {
+    let mut harness = window();
+    let first = settings(&harness);
+    harness.key_press_modifiers(Modifiers::SHIFT, Key::G);
+    harness.run_steps(12);
+    assert_ne!(settings(&harness).floor, first.floor);
+    click(&mut harness, "Reset Floor");
+    assert_eq!(settings(&harness).floor, first.floor);
+    assert!(harness.query_by_label("Reset Floor").is_none(), "there is nothing more to put back");
+    wait_until_idle(&mut harness);
+}
+
+#[test]
+fn views_from_the_sides_show_all_of_the_object() {
+    let mut harness = window();
+    let outline = |harness: &Harness<'_, App>| {
+        let (dataset, _) = crate::harness::beside();
+        chiaroscuro::model::auto::Outline::of(harness.state().settings(), dataset.volume())
+    };
+    let object = outline(&harness);
+    for key in [Key::Num1, Key::Num3, Key::Num7, Key::Num9] {
+        // From as near as somebody may have gone.
+        harness.state_mut();
+        let middle = picture_of(&harness).center();
+        harness.hover_at(middle);
+        harness.step();
+        crate::harness::turn_wheel(&harness, 400.0);
+        harness.run_steps(6);
+        let before = settings(&harness).camera;
+        harness.key_press(key);
+        wait_until(&mut harness, "never turned", |app| app.settings().camera != before);
+        let camera = settings(&harness).camera;
+        assert!(camera.distance >= object.least_distance(&camera), "{key:?}: {camera:?}");
+    }
+    // An orbit of what is framed keeps it in the frame.
+    let middle = picture_of(&harness).center();
+    drag(&mut harness, middle, vec2(160.0, 90.0));
+    let camera = settings(&harness).camera;
+    assert!(camera.distance * 1.001 >= object.least_distance(&camera), "{camera:?}");
+    wait_until_idle(&mut harness);
+}
