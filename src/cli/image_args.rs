@@ -23,8 +23,8 @@ pub(super) struct ImageArgs {
     /// Bits of each colour of a PNG file; EXR files hold linear light in 16-bit floats
     #[arg(long, value_enum, default_value_t = Bits::Eight)]
     bits: Bits,
-    /// Write over the picture how long things are (scale_bar), which side of a body is where (letters), which colour
-    /// stands for which value (legend)
+    /// Write over the picture how long things are (`scale_bar`), which side of a body is where (`letters`), which colour
+    /// stands for which value (`legend`)
     #[arg(long, value_enum, value_delimiter = ',', value_name = "MARK")]
     marks: Vec<Mark>,
 }

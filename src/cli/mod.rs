@@ -24,7 +24,7 @@ pub use error::CliError;
 use outputs::warn_line;
 use scene::LoadArgs;
 
-use crate::export::PictureFormat;
+use crate::export::may_carry_record;
 
 /// See the shape of volume data, with true volumetric shadows.
 #[derive(Debug, Parser)]
@@ -69,8 +69,7 @@ impl Args {
 
 /// Whether a file holds a look and not a volume, by its name.
 fn is_look(path: &Path) -> bool {
-    PictureFormat::with_record(path).is_some()
-        || path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
+    may_carry_record(path) || path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
 }
 
 #[derive(Debug, Subcommand)]

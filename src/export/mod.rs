@@ -21,7 +21,7 @@ pub use files::{
 };
 pub use marks::{Layer, SIDES, ScaleBar, Sheet, marks, scale_bar, sides};
 pub use picture_file::{
-    PictureFormat, check_picture, picture_size, read_picture, read_record, write_picture,
+    PictureFormat, check_picture, may_carry_record, picture_size, read_picture, read_record, write_picture,
 };
 pub use png_file::{encode_png, export_png};
 pub use rows::Rows;

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::animation::carried;
 use super::{ExportError, ReadPictureError, Rows, check_ending, exr_file, png_file};
 use crate::model::{Depth, ImageSpec};
 
@@ -19,12 +20,6 @@ impl PictureFormat {
     pub fn of_path(path: &Path) -> Self {
         let is_exr = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
         if is_exr { Self::Exr } else { Self::Png }
-    }
-
-    /// The kind of a file that may carry a record, by its name.
-    pub fn with_record(path: &Path) -> Option<Self> {
-        let is_one = |ending: &str| path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending));
-        (is_one("png") || is_one("exr")).then(|| Self::of_path(path))
     }
 
     /// The depth in which a file of this kind is written when its display colours would have `wanted`.
@@ -96,11 +91,20 @@ pub fn read_picture(path: &Path) -> Result<([u32; 2], Rows), ReadPictureError> {
     }
 }
 
-/// The record that a picture file carries, if it does.
+/// Whether a file may carry a record, by its name: a picture, or one that moves.
+pub fn may_carry_record(path: &Path) -> bool {
+    let is_one = |ending: &str| path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending));
+    ["png", "exr", "gif", "mp4"].into_iter().any(is_one)
+}
+
+/// The record that a picture file carries, or one that moves, if it does.
 ///
 /// # Errors
 /// When the file cannot be read or is no picture.
 pub fn read_record(path: &Path) -> Result<Option<String>, ReadPictureError> {
+    if let Some(found) = carried::read_record(path) {
+        return found;
+    }
     match PictureFormat::of_path(path) {
         PictureFormat::Png => png_file::read_record(path),
         PictureFormat::Exr => exr_file::read_record(path),
@@ -136,13 +140,15 @@ mod tests {
             let written = write_picture(&folder.path().join(name), &shot, None, &mut next);
             assert_eq!(written.is_ok(), fits, "{name} {depth:?}: {written:?}");
         }
-        for (name, kind) in [
-            ("a.PNG", Some(PictureFormat::Png)),
-            ("b.Exr", Some(PictureFormat::Exr)),
-            ("c.json", None),
-            ("png", None),
+        for (name, may) in [
+            ("a.PNG", true),
+            ("b.Exr", true),
+            ("c.json", false),
+            ("png", false),
+            ("d.gif", true),
+            ("e.MP4", true),
         ] {
-            assert_eq!(PictureFormat::with_record(Path::new(name)), kind, "{name}");
+            assert_eq!(may_carry_record(Path::new(name)), may, "{name}");
         }
         assert_eq!(PictureFormat::of_path(Path::new("a.exr")).depth(Depth::Sixteen), Depth::Linear);
     }

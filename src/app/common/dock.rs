@@ -109,7 +109,7 @@ impl Tool {
         let middle = pos2(whole.right() - CLOSE - 12.0, whole.top() + 0.5 * HEADER + 2.0);
         let builder = UiBuilder::new().layer_id(shown.response.layer_id).max_rect(whole);
         let ui = Ui::new(ctx.clone(), Id::unique((self.title, "title")), builder);
-        if sign(&ui, Rect::from_center_size(middle, vec2(20.0, 18.0)), text::dock::dock(self.title), true) {
+        if sign(&ui, Rect::from_center_size(middle, vec2(20.0, 18.0)), &text::dock::dock(self.title), true) {
             change(ctx, |dock| dock.docked.insert(self.title.to_owned()));
             ctx.request_repaint();
         }
@@ -143,7 +143,7 @@ impl Tool {
                     *open = false;
                 }
                 let (rect, _) = ui.allocate_exact_size(vec2(20.0, 18.0), Sense::hover());
-                if sign(ui, rect, text::dock::float(self.title), false) {
+                if sign(ui, rect, &text::dock::float(self.title), false) {
                     change(ctx, |dock| dock.docked.remove(self.title));
                     ctx.request_repaint();
                 }
@@ -156,9 +156,9 @@ impl Tool {
 }
 
 /// A button with a window whose left part is filled, if it docks, or empty; whether it was clicked.
-fn sign(ui: &Ui, area: Rect, name: String, docks: bool) -> bool {
+fn sign(ui: &Ui, area: Rect, name: &str, docks: bool) -> bool {
     let response = ui.interact(area, ui.scope_id().with(("dock", docks)), Sense::click());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
     let lit = response.hovered() || response.has_focus();
     let ink = if lit { theme::accent(ui.visuals()) } else { ui.visuals().weak_text_color() };
     let frame = Rect::from_center_size(area.center(), vec2(14.0, 11.0));
@@ -168,5 +168,5 @@ fn sign(ui: &Ui, area: Rect, name: String, docks: bool) -> bool {
         let left = Rect::from_min_max(frame.min, pos2(frame.left() + 5.0, frame.bottom()));
         painter.rect_filled(left, 1.0, ink);
     }
-    response.on_hover_text(&name).on_hover_cursor(CursorIcon::PointingHand).clicked()
+    response.on_hover_text(name).on_hover_cursor(CursorIcon::PointingHand).clicked()
 }

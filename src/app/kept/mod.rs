@@ -14,7 +14,8 @@ use crate::model::{Camera, Kept, KeptThing, ObjectTurn, Settings, Variant};
 /// The first name of its kind that is free.
 fn free_name(settings: &Settings, name: impl Fn(usize) -> String) -> String {
     let is_taken = |wanted: &str| settings.kept.iter().any(|kept| kept.name == wanted);
-    (1..).map(name).find(|name| !is_taken(name)).unwrap_or_default()
+    // One of so many names is free of so many that are kept.
+    (1..=settings.kept.len() + 1).map(name).find(|name| !is_taken(name)).unwrap_or_default()
 }
 
 impl App {

@@ -99,7 +99,7 @@ impl Strip {
                 self.dragged = Some(at);
             }
             response.context_menu(|ui| {
-                if let Some(chosen) = self.menu(ui, at, settings, commands) {
+                if let Some(chosen) = menu(ui, at, settings, commands) {
                     act = Some((at, chosen));
                 }
             });
@@ -183,65 +183,6 @@ impl Strip {
         response.on_hover_text(text::kept::tip(&kept.name, is_look, kept.digit))
     }
 
-    /// What the right button offers.
-    fn menu(
-        &mut self,
-        ui: &mut Ui,
-        at: usize,
-        settings: &mut Settings,
-        commands: &mut Vec<Command>,
-    ) -> Option<Act> {
-        let mut act = None;
-        let mut close = false;
-        let taken: Vec<_> = settings.kept.iter().filter_map(|kept| kept.digit).collect();
-        let kept = settings.kept.get_mut(at)?;
-        let is_look = kept.as_look().is_some();
-        ui.horizontal(|ui| {
-            let label = ui.label(text::kept::NAME);
-            let field = egui::TextEdit::singleline(&mut kept.name).char_limit(MAX_NAME).desired_width(170.0);
-            let response = ui.add(field).labelled_by(label.id);
-            close |= response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-        });
-        ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = 1.0;
-            ui.label(text::kept::DIGIT);
-            for digit in DIGITS {
-                let is_free = kept.digit == Some(digit) || !taken.contains(&digit);
-                let is_own = kept.digit == Some(digit);
-                let choice = ui.add_enabled(is_free, egui::Button::selectable(is_own, digit.to_string()));
-                if choice.on_hover_text(text::kept::key(digit)).clicked() {
-                    kept.digit = (!is_own).then_some(digit);
-                }
-            }
-        });
-        ui.separator();
-        if is_look && button(ui, text::kept::WITH_VIEW) {
-            commands.push(Command::GoToKept(at, true));
-            close = true;
-        }
-        if button(ui, text::kept::REPLACE) {
-            commands.push(Command::ReplaceKept(at));
-            close = true;
-        }
-        if is_look && button(ui, text::kept::COMPARE) {
-            commands.push(Command::CompareKept(None, at));
-            close = true;
-        }
-        if is_look && button(ui, text::kept::MARK) {
-            act = Some(Act::Mark);
-            close = true;
-        }
-        ui.separator();
-        if button(ui, text::kept::REMOVE) {
-            act = Some(Act::Remove);
-            close = true;
-        }
-        if close {
-            ui.close();
-        }
-        act
-    }
-
     /// Marks a look, or takes the mark away; the second one is compared with the first.
     fn mark(&mut self, at: usize, settings: &Settings, commands: &mut Vec<Command>) {
         if settings.kept.get(at).is_none_or(|kept| kept.as_look().is_none()) {
@@ -259,6 +200,59 @@ impl Strip {
             commands.push(Command::CompareKept(Some(left), right));
         }
     }
+}
+
+/// What the right button offers.
+fn menu(ui: &mut Ui, at: usize, settings: &mut Settings, commands: &mut Vec<Command>) -> Option<Act> {
+    let mut act = None;
+    let mut close = false;
+    let taken: Vec<_> = settings.kept.iter().filter_map(|kept| kept.digit).collect();
+    let kept = settings.kept.get_mut(at)?;
+    let is_look = kept.as_look().is_some();
+    ui.horizontal(|ui| {
+        let label = ui.label(text::kept::NAME);
+        let field = egui::TextEdit::singleline(&mut kept.name).char_limit(MAX_NAME).desired_width(170.0);
+        let response = ui.add(field).labelled_by(label.id);
+        close |= response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+    });
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 1.0;
+        ui.label(text::kept::DIGIT);
+        for digit in DIGITS {
+            let is_free = kept.digit == Some(digit) || !taken.contains(&digit);
+            let is_own = kept.digit == Some(digit);
+            let choice = ui.add_enabled(is_free, egui::Button::selectable(is_own, digit.to_string()));
+            if choice.on_hover_text(text::kept::key(digit)).clicked() {
+                kept.digit = (!is_own).then_some(digit);
+            }
+        }
+    });
+    ui.separator();
+    if is_look && button(ui, text::kept::WITH_VIEW) {
+        commands.push(Command::GoToKept(at, true));
+        close = true;
+    }
+    if button(ui, text::kept::REPLACE) {
+        commands.push(Command::ReplaceKept(at));
+        close = true;
+    }
+    if is_look && button(ui, text::kept::COMPARE) {
+        commands.push(Command::CompareKept(None, at));
+        close = true;
+    }
+    if is_look && button(ui, text::kept::MARK) {
+        act = Some(Act::Mark);
+        close = true;
+    }
+    ui.separator();
+    if button(ui, text::kept::REMOVE) {
+        act = Some(Act::Remove);
+        close = true;
+    }
+    if close {
+        ui.close();
+    }
+    act
 }
 
 /// Between which items the pointer is, as the number of those before it; none where there is no pointer.

@@ -139,7 +139,16 @@ pub(super) fn choice_with<T: PartialEq + Copy>(
         }
         let mut changed = false;
         // Long words take another row.
-        ui.horizontal_wrapped(|ui| {
+        let font = egui::TextStyle::Button.resolve(ui.style());
+        let width_of = |name: &str| {
+            let color = ui.visuals().text_color();
+            ui.painter().layout_no_wrap(name.to_owned(), font.clone(), color).size().x
+        };
+        let padding = 2.0 * ui.spacing().button_padding.x + ui.spacing().item_spacing.x;
+        let needed: f32 = options.iter().map(|(_, named)| width_of(named.name) + padding).sum();
+        let wraps = needed > ui.available_width();
+        let layout = Layout::left_to_right(Align::Center).with_main_wrap(wraps);
+        ui.with_layout(layout, |ui| {
             for (option, of_option) in options {
                 let mut response =
                     ui.selectable_label(value == option, of_option.name).on_hover_text(of_option.tip);

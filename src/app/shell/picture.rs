@@ -104,8 +104,7 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
         !(handles.takes_wheel || cut_handles.takes_wheel),
         // Labels have no window of values.
         viewport.dataset().map(|dataset| dataset.volume().shown_range()).filter(|_| is_by_value),
-        orbit,
-        outline,
+        (orbit, outline),
     );
     if response.double_clicked()
         && let (Some(at), Some(dataset)) = (response.interact_pointer_pos(), viewport.dataset())

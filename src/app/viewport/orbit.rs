@@ -54,8 +54,7 @@ pub(crate) fn navigate(
     selected: usize,
     zooms: bool,
     range: Option<ValueRange>,
-    orbit: &mut Orbit,
-    outline: Option<&Outline>,
+    (orbit, outline): (&mut Orbit, Option<&Outline>),
 ) {
     let Settings { camera, lights, transfer, .. } = settings;
     let (width, height) = (f64::from(response.rect.width()), f64::from(response.rect.height()));

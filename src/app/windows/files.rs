@@ -11,7 +11,7 @@ use crate::app::text::files::Question;
 use crate::app::worker::task::Work;
 use crate::data::load::endings;
 use crate::data::{ValueRange, ValueRanges, read_small};
-use crate::export::PictureFormat;
+use crate::export::may_carry_record;
 use crate::model::{EXPORTED, IMPORTED, Record, Settings, TransferFunction, export, import};
 
 /// What a dialog is for.
@@ -232,8 +232,7 @@ pub(crate) fn dropped(ctx: &egui::Context) -> Vec<PathBuf> {
 
 /// Whether a picture carries a look. Others of that kind are slices.
 pub(crate) fn carries_look(path: &Path) -> bool {
-    PictureFormat::with_record(path).is_some()
-        && crate::export::read_record(path).is_ok_and(|record| record.is_some())
+    may_carry_record(path) && crate::export::read_record(path).is_ok_and(|record| record.is_some())
 }
 
 /// Whether a file that may hold a look is a volume: a folder, or a picture of a kind that is read, without a look.
@@ -250,7 +249,7 @@ pub(crate) fn write_with_backup(path: &Path, contents: &[u8]) -> Result<(), Stri
 
 /// Reads what a session, a preset or an exported picture says.
 pub(crate) fn load_record(path: &Path) -> Result<Record, String> {
-    let record = if PictureFormat::with_record(path).is_some() {
+    let record = if may_carry_record(path) {
         let found = crate::export::read_record(path).map_err(|err| err.to_string())?;
         found.ok_or_else(|| text::files::no_settings(path))?.into_bytes()
     } else {
@@ -285,8 +284,7 @@ pub(crate) fn export_transfer(path: &Path, settings: &Settings, ranges: &ValueRa
 
 /// Whether a file holds a look and not a volume, by its name.
 pub(crate) fn is_record(path: &Path) -> bool {
-    PictureFormat::with_record(path).is_some()
-        || path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
+    may_carry_record(path) || path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
 }
 
 #[cfg(test)]

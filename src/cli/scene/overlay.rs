@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::cli::CliError;
 use crate::data::{Corrections, ValueRanges, read_small};
-use crate::export::{PictureFormat, read_record};
+use crate::export::{may_carry_record, read_record};
 use crate::model::{Preset, Record, SceneAxis, Settings};
 
 /// A preset or session.
@@ -23,7 +23,7 @@ impl Overlay {
         let builtin = Preset::find(&name).filter(|_| what == "preset");
         let text = match builtin {
             Some(preset) => preset.text().as_bytes().to_vec(),
-            None if PictureFormat::with_record(path).is_some() => {
+            None if may_carry_record(path) => {
                 let unusable =
                     || CliError::Replay { path: name.clone(), why: "it carries no settings".to_owned() };
                 read_record(path)?.ok_or_else(unusable)?.into_bytes()

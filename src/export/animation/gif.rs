@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
+use super::carried::comment;
 use super::{AnimationEncoder, AnimationSpec};
 use crate::export::ExportError;
 use crate::export::files::{Unfinished, place, temporary_beside};
@@ -48,7 +49,10 @@ impl Gif {
 }
 
 impl AnimationEncoder for Gif {
-    fn add(&mut self, shown: &[u8], _: &str) -> Result<(), ExportError> {
+    fn add(&mut self, shown: &[u8], record: &str) -> Result<(), ExportError> {
+        if self.written == 0 && !record.is_empty() {
+            self.encoder.write_raw_extension(gif::Extension::Comment.into(), &[&comment(record)])?;
+        }
         let mut pixels = shown.to_vec();
         for pixel in pixels.chunks_exact_mut(4) {
             pixel[3] = if self.reel.transparent && pixel[3] < 128 { 0 } else { 255 };

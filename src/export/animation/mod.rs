@@ -1,6 +1,7 @@
 //! Pictures that move: written frame by frame, so that a long turn takes no more memory than a short one.
 
 mod apng;
+pub(super) mod carried;
 mod folder;
 mod gif;
 mod mp4;

@@ -2,10 +2,11 @@
 
 use std::ffi::OsStr;
 use std::fs::File;
-use std::io::{BufWriter, Read as _, Seek as _, Write as _};
+use std::io::{BufWriter, Read as _, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, Stdio};
 
+use super::carried::append;
 use super::{AnimationEncoder, AnimationSpec};
 use crate::export::ExportError;
 use crate::export::files::{Unfinished, place, scratch, temporary_beside};
@@ -64,6 +65,8 @@ pub(super) struct Mp4 {
     file: Unfinished,
     path: PathBuf,
     missing: u32,
+    /// What made the first picture.
+    record: String,
 }
 
 impl Mp4 {
@@ -103,12 +106,15 @@ impl Mp4 {
             .map_err(not_there)?;
         let frames = child.stdin.take().map(BufWriter::new);
         let ffmpeg = Ffmpeg { child, frames, words };
-        Ok(Self { ffmpeg, file, path: path.to_owned(), missing: reel.frames })
+        Ok(Self { ffmpeg, file, path: path.to_owned(), missing: reel.frames, record: String::new() })
     }
 }
 
 impl AnimationEncoder for Mp4 {
-    fn add(&mut self, shown: &[u8], _: &str) -> Result<(), ExportError> {
+    fn add(&mut self, shown: &[u8], record: &str) -> Result<(), ExportError> {
+        if self.record.is_empty() {
+            record.clone_into(&mut self.record);
+        }
         self.missing = self.missing.saturating_sub(1);
         match self.ffmpeg.frames.as_mut().map(|frames| frames.write_all(&rgb(shown))) {
             Some(Ok(())) => Ok(()),
@@ -118,7 +124,7 @@ impl AnimationEncoder for Mp4 {
     }
 
     fn finish(self: Box<Self>) -> Result<(), ExportError> {
-        let Self { mut ffmpeg, file, path, missing } = *self;
+        let Self { mut ffmpeg, file, path, missing, record } = *self;
         if missing > 0 {
             return Err(ExportError::Unfit { what: "pictures are missing", path });
         }
@@ -130,6 +136,11 @@ impl AnimationEncoder for Mp4 {
         let length = file.as_file().metadata().map_err(ExportError::writing(&path))?.len();
         if !ended.success() || length == 0 {
             return Err(ffmpeg.failure(&path, "it wrote nothing"));
+        }
+        if !record.is_empty() {
+            let mut end = file.reopen().map_err(ExportError::writing(&path))?;
+            let appended = end.seek(SeekFrom::End(0)).and_then(|_| append(&mut end, &record));
+            appended.map_err(ExportError::writing(&path))?;
         }
         place(file, &path)
     }

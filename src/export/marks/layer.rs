@@ -2,14 +2,16 @@
 
 use std::sync::LazyLock;
 
-use ab_glyph::{Font, FontRef, ScaleFont, point};
+use ab_glyph::{Font as _, FontRef, ScaleFont as _, point};
 
 use crate::export::Rows;
 use crate::model::{Depth, ImageSpec, linear_from_srgb};
 
+/// The file of the typeface; its licence lies beside it.
+static FONT: &[u8] = include_bytes!("../../../assets/fonts/Ubuntu-Light.ttf");
+
 /// The typeface of the window. None if what the package holds is no font.
-static TYPEFACE: LazyLock<Option<FontRef<'static>>> =
-    LazyLock::new(|| FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT).ok());
+static TYPEFACE: LazyLock<Option<FontRef<'static>>> = LazyLock::new(|| FontRef::try_from_slice(FONT).ok());
 
 /// Ink that is read on dark pictures.
 pub(super) const BRIGHT: [u8; 3] = [0xe8, 0xec, 0xf2];
@@ -101,7 +103,7 @@ impl Layer {
         let width = shot.size[0] as usize;
         for dab in &self.dabs {
             let ink = dab.ink.map(|c| f64::from(c) / 255.0);
-            let linear = ink.map(|c| linear_from_srgb(c));
+            let linear = ink.map(linear_from_srgb);
             for (row, covered) in dab.coverage.chunks(dab.width.max(1)).enumerate() {
                 let Ok(y) = usize::try_from(dab.top + row as i64 - first as i64) else { continue };
                 for (column, &alpha) in covered.iter().enumerate().filter(|(_, alpha)| **alpha > 0) {
@@ -207,7 +209,7 @@ mod tests {
         let right = ink.map(|dab| dab.left + dab.width as i64).max().unwrap() as f64;
         let width = Layer::width("Skull 12", height);
         assert!((right - left - width).abs() < 8.0, "{left} … {right}: {width}");
-        assert!(((left + right) / 2.0 - 100.0).abs() < 4.0);
+        assert!((f64::midpoint(left, right) - 100.0).abs() < 4.0);
         assert!(Layer::width("WW", height) > Layer::width("ii", height));
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::data::single_line;
+use crate::data::{Corrections, single_line};
 use crate::model::{Camera, MAX_NAME, Settings};
 
 /// How many views and looks can be kept: as many as a strip of small pictures shows at a glance, with some scrolling.
@@ -47,7 +47,7 @@ pub struct KeptLook(Arc<Settings>);
 impl KeptLook {
     /// A look as it is.
     pub fn new(look: &Settings) -> Self {
-        let mut look = Settings { kept: Vec::new(), volume: Default::default(), ..look.clone() };
+        let mut look = Settings { kept: Vec::new(), volume: Corrections::default(), ..look.clone() };
         look.sanitise();
         Self(Arc::new(look))
     }

@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 
 use chiaroscuro::app::App;
-use eframe::egui::{Key, Modifiers, Rect, Role, Theme, ThemePreference, pos2};
+use eframe::egui::{Event, Key, Modifiers, Rect, Role, Theme, ThemePreference, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use image::{RgbaImage, imageops};
@@ -133,6 +133,14 @@ fn windows_over_the_picture() {
     ] {
         harness.key_press_modifiers(modifiers, key);
         harness.run_steps(6);
+        if name == "export" {
+            // The folder is where the tests run.
+            harness.get_by_role_and_label(Role::TextInput, "File").focus();
+            harness.run_steps(2);
+            harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+            harness.event(Event::Text("/pictures/chair.png".to_owned()));
+            harness.run_steps(4);
+        }
         for (theme, suffix) in THEMES {
             let window = in_theme(&mut harness, theme);
             let area = harness.get_by_role(Role::Window).rect();

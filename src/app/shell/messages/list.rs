@@ -23,13 +23,15 @@ impl Messages {
                     ui.horizontal_top(|ui| {
                         ui.weak(text::memory::since(when.elapsed()));
                         ui.vertical(|ui| {
-                            let mut short = RichText::new(&message.short);
+                            let mut short = RichText::new(message.words());
                             if message.is_error {
                                 short = short.color(ui.visuals().error_fg_color);
                             }
                             ui.add(egui::Label::new(short).wrap());
-                            if !message.details.is_empty() {
-                                ui.add(egui::Label::new(RichText::new(&message.details).weak()).wrap());
+                            // The first line has been said.
+                            let more: Vec<&str> = message.details.lines().skip(1).collect();
+                            if !more.is_empty() {
+                                ui.add(egui::Label::new(RichText::new(more.join("\n")).weak()).wrap());
                             }
                         });
                     });

@@ -77,10 +77,12 @@ pub(crate) fn grazing(name: &str, angle_deg: f64) -> String {
 
 /// Material takes a light before it arrives.
 pub(crate) fn absorbed(name: &str, share: f64, distance: Option<&str>) -> String {
+    // What is left of most of a light is dim, and what is left of little dark.
+    let how = if share < 0.6 { "Dim" } else { "Dark" };
     let share = 100.0 * share;
     match distance {
-        Some(distance) => format!("Dark: {share:.0} % of {name} is absorbed {distance} before"),
-        None => format!("Dark: {share:.0} % of {name} is absorbed on its way"),
+        Some(distance) => format!("{how}: {share:.0} % of {name} is absorbed {distance} before"),
+        None => format!("{how}: {share:.0} % of {name} is absorbed on its way"),
     }
 }
 

@@ -6,7 +6,7 @@ use crate::model::{Light, Settings, Sides};
 use crate::plan::{Arrival, Probe};
 
 /// From this share of all light on nobody asks why it is dark.
-const BRIGHT: f64 = 0.6;
+const BRIGHT: f64 = 0.5;
 
 /// What decides how bright a place is.
 #[derive(Debug, Clone, Copy, PartialEq)]

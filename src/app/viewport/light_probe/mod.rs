@@ -97,6 +97,13 @@ impl LightProbe {
             _ => None,
         };
         let cause = found.map(|found| Cause::of(settings, found));
+        let lost = found.and_then(|found| {
+            let blocked = settings.lights.iter().zip(&found.lights).find_map(|(light, arrival)| {
+                let [near, _] = arrival.blocked.filter(|_| light.on)?;
+                Some(found.point + towards(light, &settings.camera, found.point) * near)
+            })?;
+            Some(place(&settings.camera, picture, blocked)? - at)
+        });
         let shown = Tag {
             cause,
             sentence: cause.map_or_else(
@@ -105,6 +112,7 @@ impl LightProbe {
             ),
             facts: found.map_or_else(String::new, |found| answer(settings, volume, found)),
             distance,
+            lost,
             is_pinned: pinned.is_some(),
         };
         if let Some(cure) = tag::show(ui, picture, at, &shown) {
@@ -199,6 +207,15 @@ fn reason(light: &Light, arrival: &Arrival) -> String {
     text::probe::arrival(&through, angle_deg)
 }
 
+/// Where a light is, as seen from a point.
+fn towards(light: &Light, camera: &Camera, point: DVec3) -> DVec3 {
+    let world = light.in_scene(camera);
+    match light.kind {
+        LightKind::Parallel => world.direction(),
+        LightKind::Perspective => (DVec3::from(world.position) - point).normalize_or(DVec3::Z),
+    }
+}
+
 /// Lines from the point to the lights: as strong as what arrives.
 fn rays(painter: &egui::Painter, picture: Rect, settings: &Settings, found: &Probe) {
     let camera = &settings.camera;
@@ -212,10 +229,7 @@ fn rays(painter: &egui::Painter, picture: Rect, settings: &Settings, found: &Pro
         let Some(to) = place(camera, picture, to) else { continue };
         // Where the light is lost.
         if let Some([near, far]) = arrival.blocked {
-            let towards = match light.kind {
-                LightKind::Parallel => world.direction(),
-                LightKind::Perspective => (DVec3::from(world.position) - found.point).normalize_or(DVec3::Z),
-            };
+            let towards = towards(light, camera, found.point);
             let [Some(near), Some(far)] =
                 [near, far].map(|distance| place(camera, picture, found.point + towards * distance))
             else {

@@ -1,7 +1,7 @@
 //! The tag beside the pointer, or beside the place that was clicked: the cause in one sentence, what is known, and what
 //! helps.
 
-use eframe::egui::{self, Id, Key, Modifiers, Order, Pos2, Rect, RichText, Ui, vec2};
+use eframe::egui::{self, Id, Key, Modifiers, Order, Pos2, Rect, RichText, Ui, Vec2, vec2};
 
 use super::cause::{Cause, Cure};
 use crate::app::text;
@@ -20,6 +20,8 @@ pub(super) struct Tag {
     pub facts: String,
     /// How far it is from the place that was clicked before.
     pub distance: Option<String>,
+    /// Where light is lost, as seen from the place: the tag lies on the other side.
+    pub lost: Option<Vec2>,
     /// The place was clicked: there is time for buttons.
     pub is_pinned: bool,
 }
@@ -27,9 +29,9 @@ pub(super) struct Tag {
 /// Shows the tag beside a place of the picture; what the user wants to be done.
 pub(super) fn show(ui: &Ui, picture: Rect, at: Pos2, tag: &Tag) -> Option<Cure> {
     let mut chosen = None;
-    // On the side where there is more room.
-    let is_right = at.x < picture.center().x;
-    let is_below = at.y < picture.center().y;
+    // Away from what it speaks of, or on the side where there is more room.
+    let is_right = tag.lost.map_or(at.x < picture.center().x, |lost| lost.x < 0.0);
+    let is_below = tag.lost.map_or(at.y < picture.center().y, |lost| lost.y < 0.0);
     let pivot = match (is_right, is_below) {
         (true, true) => egui::Align2::LEFT_TOP,
         (true, false) => egui::Align2::LEFT_BOTTOM,

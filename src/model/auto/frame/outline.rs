@@ -114,7 +114,7 @@ mod tests {
         let outline = Outline::of(&settings, &volume);
         for projection in [Projection::Perspective, Projection::Orthographic] {
             for (azimuth_deg, elevation_deg) in [(0.0, 0.0), (90.0, 0.0), (0.0, 90.0), (40.0, -30.0)] {
-                let mut camera = Camera { azimuth_deg, elevation_deg, projection, ..settings.camera.clone() };
+                let mut camera = Camera { projection, azimuth_deg, elevation_deg, ..settings.camera.clone() };
                 outline.frame(&mut camera);
                 let reached = reach(&outline, &camera);
                 assert!((0.4..=1.0).contains(&reached), "{projection:?} {azimuth_deg}: {reached}");
