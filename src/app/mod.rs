@@ -170,6 +170,7 @@ impl Drop for App {
         // Nobody waits for its end any more.
         self.light_search = None;
         self.contact_sheet.forget();
+        self.strip.forget();
         // Where another window takes the place of this one, that waits in the end.
         if !self.is_ending {
             task::wait_for_all(LAST_TASKS);

@@ -28,6 +28,7 @@ impl Command {
             Self::ImportTransfer => text::commands::TRANSFER_WORDS,
             Self::ToggleCompare => text::commands::COMPARE_WORDS,
             Self::TogglePictureOnly => text::commands::PICTURE_ONLY_WORDS,
+            Self::Scale(_) => text::commands::SCALE_WORDS,
             _ => "",
         }
     }
@@ -119,6 +120,9 @@ impl Command {
             Self::AutomaticTransfer => text::commands::AUTOMATIC_TRANSFER,
             Self::Balance => text::commands::BALANCE,
             Self::ToggleSide => text::commands::TOGGLE_SIDE,
+            Self::Scale(1) => text::commands::LARGER,
+            Self::Scale(-1) => text::commands::SMALLER,
+            Self::Scale(_) => text::commands::USUAL_SIZE,
             Self::ToggleTransfer => text::commands::TOGGLE_TRANSFER,
             Self::TogglePictureOnly => text::commands::PICTURE_ONLY,
             Self::ToggleHandles => text::commands::TOGGLE_HANDLES,

@@ -167,6 +167,8 @@ pub(crate) enum Command {
     ToggleTransfer,
     /// Show the picture alone, or the panels again.
     TogglePictureOnly,
+    /// Make all of the window larger (1), smaller (−1), or as large as it was (0).
+    Scale(i8),
     /// Show or hide the handles of the lights.
     ToggleHandles,
     /// Show two looks in one picture, or one again.
@@ -236,6 +238,9 @@ pub(crate) fn listed() -> Vec<Command> {
         Command::ToggleTransfer,
         Command::TogglePictureOnly,
         Command::ToggleKept,
+        Command::Scale(1),
+        Command::Scale(-1),
+        Command::Scale(0),
         Command::KeepView,
         Command::KeepInStrip,
         Command::ExportKept,

@@ -1,5 +1,6 @@
 //! The keys of commands.
 
+use eframe::egui::gui_zoom::kb_shortcuts;
 use eframe::egui::{self, Event, Key, KeyboardShortcut, Modifiers};
 
 use super::commands::Command;
@@ -76,6 +77,10 @@ impl Command {
         match self {
             Self::StoreView(slot) => return text::commands::store_view_keys(*slot),
             Self::RecallView(slot) => return text::commands::recall_view_keys(*slot),
+            // The toolkit listens to them by itself.
+            Self::Scale(1) => return ctx.format_shortcut(&kb_shortcuts::ZOOM_IN),
+            Self::Scale(-1) => return ctx.format_shortcut(&kb_shortcuts::ZOOM_OUT),
+            Self::Scale(_) => return ctx.format_shortcut(&kb_shortcuts::ZOOM_RESET),
             _ => {}
         }
         let found = SHORTCUTS.into_iter().find(|(_, command)| command == self);

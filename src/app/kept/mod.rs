@@ -9,7 +9,7 @@ pub(in crate::app) use self::strip::Strip;
 use super::App;
 use super::common::commands::Command;
 use crate::app::text;
-use crate::model::{Camera, Kept, KeptThing, ObjectTurn, Settings, Variant};
+use crate::model::{Camera, Kept, KeptLook, KeptThing, ObjectTurn, Settings, Variant};
 
 /// The first name of its kind that is free.
 fn free_name(settings: &Settings, name: impl Fn(usize) -> String) -> String {
@@ -90,13 +90,13 @@ impl App {
 
     /// Keeps what is shown in the place of something that is kept.
     pub(in crate::app) fn replace_kept(&mut self, at: usize) {
-        let Settings { camera, .. } = self.settings.clone();
-        let look = Kept::look(String::new(), &self.settings);
-        if let Some(kept) = self.settings.kept.get_mut(at) {
-            kept.what = match kept.what {
-                KeptThing::View(_) => KeptThing::View(camera),
-                KeptThing::Look(_) => look.what,
-            };
+        let Some(kept) = self.settings.kept.get(at) else { return };
+        let what = match kept.what {
+            KeptThing::View(_) => KeptThing::View(self.settings.camera.clone()),
+            KeptThing::Look(_) => KeptThing::Look(KeptLook::new(&self.settings)),
+        };
+        if !self.settings.keep_instead(at, what) {
+            self.messages.error(text::kept::NO_ROOM, String::new());
         }
     }
 

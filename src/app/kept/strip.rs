@@ -39,8 +39,15 @@ fn button(ui: &mut Ui, Named { name, tip }: Named) -> bool {
 }
 
 impl Strip {
+    /// Forgets pictures, and whoever makes them: another volume is shown, or nothing more.
+    pub(in crate::app) fn forget(&mut self) {
+        *self = Self::default();
+    }
+
     /// Shows the strip below the picture.
     pub(super) fn show(&mut self, ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Command>) {
+        // What is kept may have changed meanwhile, by a step back, say.
+        self.dragged = self.dragged.filter(|&at| at < settings.kept.len());
         let panel = egui::Panel::bottom("kept").resizable(false).frame(theme::panel(ui));
         panel.exact_size(HEIGHT + NAME + 22.0).show(ui, |ui| {
             ui.horizontal_top(|ui| {
@@ -48,6 +55,7 @@ impl Strip {
                 ui.separator();
                 if settings.kept.is_empty() {
                     ui.add(egui::Label::new(egui::RichText::new(text::kept::NOTHING).weak()).wrap());
+                    self.dragged = None;
                     return;
                 }
                 let area = egui::ScrollArea::horizontal().auto_shrink(false);

@@ -21,6 +21,7 @@ struct Drawn {
 struct Drawing {
     work: Work<()>,
     drawn: mpsc::Receiver<(KeptThing, Option<ColorImage>)>,
+    wanted: Vec<KeptThing>,
     content_id: u64,
 }
 
@@ -71,10 +72,10 @@ impl Thumbnails {
     ) -> std::io::Result<()> {
         let content_id = subject.dataset.volume().content_id();
         let (sender, drawn) = mpsc::channel();
-        let wake = ctx.clone();
+        let (wake, all) = (ctx.clone(), wanted.clone());
         let task = move || {
             let mut worker = Worker::new(&subject);
-            for what in wanted {
+            for what in all {
                 let settings = shown_of(&what, &subject.settings);
                 let picture = match &mut worker {
                     Ok(worker) => small_picture(worker, &subject, &settings),
@@ -90,7 +91,7 @@ impl Thumbnails {
             }
         };
         let work = Work::start("kept", ctx, task)?;
-        self.drawing = Some(Drawing { work, drawn, content_id });
+        self.drawing = Some(Drawing { work, drawn, wanted, content_id });
         Ok(())
     }
 
@@ -103,8 +104,13 @@ impl Thumbnails {
             let texture = picture.map(|picture| ctx.load_texture("kept", picture, TextureOptions::LINEAR));
             self.drawn.push(Drawn { of: (what, drawing.content_id), texture });
         }
-        if is_over {
-            self.drawing = None;
+        if let Some(Drawing { wanted, content_id, .. }) = self.drawing.take_if(|_| is_over) {
+            // What was not made, because the thread has come to a bad end, is not tried again and again.
+            for what in wanted {
+                if self.drawn.iter().all(|drawn| drawn.of.0 != what) {
+                    self.drawn.push(Drawn { of: (what, content_id), texture: None });
+                }
+            }
         }
     }
 }

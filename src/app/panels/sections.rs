@@ -23,7 +23,8 @@ pub(super) fn put_back(title: &str, settings: &mut Settings, first: &Settings) {
     let first = first.clone();
     match title {
         LABELS => settings.labels = first.labels,
-        LIGHTS => settings.lights = first.lights,
+        // Lights stand around the object as it stood.
+        LIGHTS if settings.camera.up == first.camera.up => settings.lights = first.lights,
         SHADOWS => {
             // The balance is measured, and not set.
             let Shadows { balance, keep_balanced, .. } = settings.shadows;
@@ -33,7 +34,13 @@ pub(super) fn put_back(title: &str, settings: &mut Settings, first: &Settings) {
         SOFT_LIGHT => (settings.sky, settings.scattering) = (first.sky, first.scattering),
         SHADING => (settings.shading, settings.output) = (first.shading, first.output),
         CUTS => settings.cuts = first.cuts,
-        FLOOR => settings.floor = first.floor,
+        FLOOR => {
+            let height = settings.floor.height;
+            settings.floor = first.floor;
+            if settings.camera.up != first.camera.up {
+                settings.floor.height = height;
+            }
+        }
         CAMERA => {
             settings.sampling = first.sampling;
             settings.camera.projection = first.camera.projection;

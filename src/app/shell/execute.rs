@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use eframe::egui;
+use eframe::egui::{self, gui_zoom};
 
 use crate::app::common::commands::Command;
 use crate::app::common::{light_keys, reveal};
@@ -53,7 +53,7 @@ impl App {
             Command::CopyPicture => self.copy_picture(ctx),
             Command::KeepLook => self.keeps_look ^= true,
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
-            Command::Undo | Command::Redo => self.go(command == Command::Undo, ctx),
+            Command::Undo | Command::Redo => self.go(command == Command::Undo, true, ctx),
             Command::ToggleHistory => self.listed.open ^= true,
             Command::GoSteps(steps) => self.go_steps(steps, ctx),
             Command::ToggleMessages => self.messages.lists ^= true,
@@ -137,6 +137,9 @@ impl App {
             }
             Command::ExportKept => self.files.ask(Purpose::ExportKept, frame, ctx),
             Command::ToggleKept => self.layout.kept ^= true,
+            Command::Scale(1) => gui_zoom::zoom_in(ctx),
+            Command::Scale(-1) => gui_zoom::zoom_out(ctx),
+            Command::Scale(_) => ctx.set_zoom_factor(1.0),
             Command::ToggleFullScreen => {
                 let is_full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
                 ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!is_full));

@@ -250,16 +250,23 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
         }
     });
     ui.separator();
-    let mut theme = ui.ctx().options(|options| options.theme_preference);
-    for (choice, name) in [
-        (ThemePreference::Dark, text::menu::DARK),
-        (ThemePreference::Light, text::menu::BRIGHT),
-        (ThemePreference::System, text::menu::AS_SYSTEM),
-    ] {
-        if ui.radio_value(&mut theme, choice, name).changed() {
-            ui.ctx().set_theme(choice);
+    ui.menu_button(text::menu::SIZE, |ui| {
+        for by in [1, -1, 0] {
+            item(ui, menu, Command::Scale(by), true);
         }
-    }
+    });
+    ui.menu_button(text::menu::THEME, |ui| {
+        let mut theme = ui.ctx().options(|options| options.theme_preference);
+        for (choice, name) in [
+            (ThemePreference::Dark, text::menu::DARK),
+            (ThemePreference::Light, text::menu::BRIGHT),
+            (ThemePreference::System, text::menu::AS_SYSTEM),
+        ] {
+            if ui.radio_value(&mut theme, choice, name).changed() {
+                ui.ctx().set_theme(choice);
+            }
+        }
+    });
 }
 
 /// What a frame may take: 60, 30, 15 and 5 per second.

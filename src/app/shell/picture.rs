@@ -138,7 +138,7 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
     }
     if let Some(dataset) = viewport.dataset().filter(|_| probe.on) {
         let pointer = response.hover_pos().filter(|_| !response.dragged());
-        let pointing = Pointing { pointer, clicked: response.clicked() };
+        let pointing = Pointing { pointer, clicked: response.clicked() && !response.double_clicked() };
         probe.show(ui, canvas.rect, settings, dataset.volume(), pointing);
     }
     if let Some(dataset) = viewport.dataset() {

@@ -7,9 +7,11 @@ use eframe::egui;
 
 use super::error::AppError;
 use crate::app::common::volume_facts::VolumeFacts;
+use crate::app::layout::Layout;
 use crate::app::memory::Memory;
 use crate::app::shell::first_lights::FirstLights;
 use crate::app::shell::history::History;
+use crate::app::shell::messages::Messages;
 use crate::app::shell::object::corrected::Corrected;
 use crate::app::shell::object::treat_as::Treated;
 use crate::app::shell::opening::PendingLook;
@@ -41,6 +43,11 @@ pub(in crate::app) struct Carried {
     keeps_look: bool,
     compare: Compare,
     selected_light: usize,
+    /// All that was said.
+    messages: Messages,
+    layout: Layout,
+    /// The probe is on.
+    probes: bool,
     /// It goes on: it has a device of its own.
     export: Export,
     /// What was being opened.
@@ -89,6 +96,9 @@ impl App {
             keeps_look: self.keeps_look,
             compare: self.compare.clone(),
             selected_light: self.selected_light,
+            messages: std::mem::take(&mut self.messages),
+            layout: self.layout.clone(),
+            probes: self.probe.on,
             export: std::mem::take(&mut self.export),
             opening,
             pending: self.pending.take(),
@@ -122,6 +132,9 @@ impl App {
             keeps_look,
             compare,
             selected_light,
+            messages,
+            layout,
+            probes,
             export,
             opening,
             pending,
@@ -137,6 +150,8 @@ impl App {
         (app.keeps_look, app.compare, app.selected_light) = (keeps_look, compare, selected_light);
         (app.pending, app.trusts_paths, app.export) = (pending, trusts_paths, export);
         app.waiting = dataset;
+        layout.apply(&cc.egui_ctx);
+        (app.messages, app.layout, app.probe.on) = (messages, layout, probes);
         if asks {
             app.lost_again.ask();
         } else {

@@ -17,10 +17,10 @@ pub(crate) const WITH_VIEW: Named = named("Go to it with its view", "Also look f
 pub(crate) const COMPARE: Named =
     named("Compare with the picture", "Left of a divider the picture, right of it this look");
 pub(crate) const MARK: Named =
-    named("Mark to compare", "Two marked looks can be compared; Ctrl and click does the same");
+    named("Mark to compare", "Two marked looks can be compared; Ctrl (⌘ on a Mac) and a click does the same");
 pub(crate) const REMOVE: Named = named("Remove", "It is kept no longer");
 pub(crate) const DIGIT: &str = "Key";
-pub(crate) const NO_ROOM: &str = "No more can be kept: remove a view or a look first";
+pub(crate) const NO_ROOM: &str = "There is no room for it: at most 32 views and looks are kept, and a table of a thousand labels is too much for one";
 
 /// What a small picture is called.
 pub(crate) fn go_to(name: &str) -> String {

@@ -29,6 +29,10 @@ impl Freehand {
         if response.hovered() {
             ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
         }
+        if !(response.dragged() || response.drag_started() || response.drag_stopped()) {
+            // A stroke that was cut off, because the editor was hidden, is over.
+            (self.before, self.stroke) = (None, Vec::new());
+        }
         let painter = ui.painter_at(axes.area);
         for point in &function.points {
             let at = axes.position(point.value, point.opacity);

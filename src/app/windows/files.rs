@@ -113,7 +113,7 @@ impl Files {
             }
             Purpose::OpenFolder => Box::pin(dialog.pick_folder()),
             Purpose::LoadSettings | Purpose::CompareSettings => {
-                let endings = ["json", "png", "exr"];
+                let endings = ["json", "png", "exr", "gif", "mp4"];
                 Box::pin(dialog.add_filter(text::files::SETTINGS_AND_PICTURES, &endings).pick_file())
             }
             Purpose::Surroundings => {

@@ -47,7 +47,9 @@ pub(in crate::export) fn read_record(path: &Path) -> Option<Result<Option<String
 }
 
 /// The comment with our mark that stands before the first picture.
-fn in_gif(mut file: impl Read) -> std::io::Result<Option<Vec<u8>>> {
+fn in_gif(file: impl Read) -> std::io::Result<Option<Vec<u8>>> {
+    // Records are at the beginning, and files may be of any length.
+    let mut file = file.take(4 * MAX_LOOK_BYTES as u64);
     let mut head = [0; 13];
     file.read_exact(&mut head)?;
     if !head.starts_with(b"GIF8") {

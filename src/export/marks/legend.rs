@@ -56,7 +56,12 @@ fn values(layer: &mut Layer, settings: &Settings, volume: &Volume, [width, heigh
     let Some([low, high]) = seen(settings, volume) else { return };
     let (tall, wide) = ((height * BAR).round(), (letters * 0.9).round());
     let (numbers, decimals) = ticks([low, high]);
-    let texts: Vec<String> = numbers.iter().map(|value| format!("{value:.decimals$}")).collect();
+    let text = |value: &f64| match decimals {
+        // Zeros alone would say nothing.
+        9.. => format!("{value:.1e}"),
+        _ => format!("{value:.decimals$}"),
+    };
+    let texts: Vec<String> = numbers.iter().map(text).collect();
     let longest = texts.iter().map(|text| Layer::width(text, letters)).fold(0.0, f64::max);
     let left = (width - letters - longest - letters * 0.5 - wide).round();
     let top = ((height - tall) / 2.0).round();

@@ -128,6 +128,36 @@ impl Settings {
         has_room
     }
 
+    /// Keeps something in the place of something else; whether there was room for it.
+    pub fn keep_instead(&mut self, at: usize, what: KeptThing) -> bool {
+        let Some(kept) = self.kept.get(at) else { return false };
+        let instead = Kept { what, ..kept.clone() };
+        let others: usize = self
+            .kept
+            .iter()
+            .enumerate()
+            .filter(|(other, _)| *other != at)
+            .map(|(_, kept)| kept.bytes())
+            .sum();
+        let has_room = others.saturating_add(instead.bytes()) <= MAX_KEPT_BYTES;
+        if has_room {
+            self.kept[at] = instead;
+        }
+        has_room
+    }
+
+    /// Leaves out what is kept beyond the bytes that there may be; how many that were.
+    pub(in crate::model) fn bound_kept(&mut self) -> usize {
+        let (before, mut bytes) = (self.kept.len(), 0_usize);
+        self.kept.retain(|kept| {
+            let with = bytes.saturating_add(kept.bytes());
+            let fits = with <= MAX_KEPT_BYTES;
+            bytes = if fits { with } else { bytes };
+            fits
+        });
+        before - self.kept.len()
+    }
+
     /// What a digit goes to.
     pub fn kept_under(&self, digit: u8) -> Option<&Kept> {
         self.kept.iter().find(|kept| kept.digit == Some(digit))
@@ -218,7 +248,13 @@ mod tests {
         let point = ControlPoint::new(1.0, [0.5; 3], 0.5);
         wide.transfer.points = vec![point; crate::model::MAX_POINTS];
         let kept = Kept::look("x", &wide);
-        assert!(!wide.keep(kept), "too much for a session");
+        assert!(!wide.keep(kept.clone()), "too much for a session");
+        let (mut replaced, small) = (settings.clone(), settings.clone());
+        assert!(!replaced.keep_instead(1, kept.what.clone()) && replaced == small);
+        assert!(replaced.keep_instead(1, KeptThing::View(small.camera.clone())) && replaced != small);
+        // From a file of somebody else.
+        wide.kept = vec![small.kept[0].clone(), kept, small.kept[1].clone()];
+        assert_eq!((wide.bound_kept(), wide.kept.len()), (1, 2));
         assert!(crate::model::to_json(&settings).len() < crate::model::MAX_LOOK_BYTES);
     }
 }

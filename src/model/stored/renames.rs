@@ -2,6 +2,8 @@
 
 use serde_json::{Map, Value, json};
 
+use crate::model::{Camera, Fit};
+
 /// Fields that were called otherwise, by their path: (before, now).
 const FIELDS: [(&str, &str); 1] = [("ground", "floor")];
 
@@ -31,9 +33,15 @@ fn gather_views(fields: &mut Map<String, Value>) {
         .filter(|(_, camera)| camera.is_object())
         .collect();
     views.sort_by_key(|(digit, _)| *digit);
-    let kept = views.into_iter().map(
-        |(digit, camera)| json!({"name": format!("View {digit}"), "digit": digit, "what": {"view": camera}}),
-    );
+    let kept = views.into_iter().map(|(digit, camera)| {
+        // What it leaves open is as usual, but that its angle of view is that of the height.
+        let mut whole =
+            serde_json::to_value(Camera { fit: Fit::Height, ..Camera::default() }).unwrap_or_default();
+        if let (Value::Object(whole), Value::Object(camera)) = (&mut whole, camera) {
+            whole.extend(camera);
+        }
+        json!({"name": format!("View {digit}"), "digit": digit, "what": {"view": whole}})
+    });
     let kept = Value::Array(kept.collect());
     fields.remove("views");
     fields.entry("kept").or_insert(kept);
@@ -104,8 +112,10 @@ mod tests {
     fn views_of_digits_are_kept_in_their_order() {
         let mut saved = json!({"views": {"7": {"distance": 2.0}, "3": {"distance": 3.0}, "x": {}, "4": 1}});
         rename("", &mut saved);
-        let view = |digit: u8, distance: f64| json!({"name": format!("View {digit}"), "digit": digit, "what": {"view": {"distance": distance}}});
-        assert_eq!(saved, json!({"kept": [view(3, 3.0), view(7, 2.0)]}));
+        let kept: Vec<crate::model::Kept> = serde_json::from_value(saved["kept"].clone()).unwrap();
+        let found: Vec<_> = kept.iter().map(|kept| (kept.name.as_str(), kept.camera().distance)).collect();
+        assert_eq!(found, [("View 3", 3.0), ("View 7", 2.0)]);
+        assert!(saved.get("views").is_none());
         let mut both = json!({"views": {"7": {}}, "kept": []});
         rename("", &mut both);
         assert_eq!(both, json!({"kept": []}), "what is newer counts");

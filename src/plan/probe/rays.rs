@@ -75,7 +75,28 @@ impl Rays<'_> {
         Some(origin + direction * at)
     }
 
-    /// ∫ extinction from a step beyond a point towards a light: what is seen does not shade itself.
+    /// Steps from one beyond a point towards a light, each as its distance and the optical depth of what it meets: what is
+    /// seen does not shade itself.
+    fn steps(
+        &self,
+        table: &BakedTransfer,
+        remains: &Region,
+        point: DVec3,
+        towards: DVec3,
+        distance: f64,
+    ) -> impl Iterator<Item = (f64, f64)> {
+        let step = self.step();
+        // Where there is nothing on the way there are no steps.
+        let (enter, leave) = self.span(remains, point, towards).unwrap_or_default();
+        let first = (enter / step).ceil().max(1.0) as usize;
+        let last = (leave.min(distance) / step).floor().max(1.0) as usize;
+        (first..last).map(move |k| {
+            let at = (k as f64 + 0.5) * step;
+            (at, self.extinction(table, point + towards * at) * step)
+        })
+    }
+
+    /// ∫ extinction from a step beyond a point towards a light.
     pub(super) fn optical_depth(
         &self,
         table: &BakedTransfer,
@@ -84,13 +105,7 @@ impl Rays<'_> {
         towards: DVec3,
         distance: f64,
     ) -> f64 {
-        let Some((enter, leave)) = self.span(remains, point, towards) else { return 0.0 };
-        let step = self.step();
-        let first = (enter / step).ceil().max(1.0) as usize;
-        let last = (leave.min(distance) / step).floor().max(1.0) as usize;
-        let sum: f64 =
-            (first..last).map(|k| self.extinction(table, point + towards * ((k as f64 + 0.5) * step))).sum();
-        sum * step
+        self.steps(table, remains, point, towards, distance).map(|(_, depth)| depth).sum()
     }
 
     /// Between which distances from a point towards a light all but a quarter of its loss at either end happens; none where
@@ -103,17 +118,14 @@ impl Rays<'_> {
         towards: DVec3,
         distance: f64,
     ) -> Option<[f64; 2]> {
-        let (enter, leave) = self.span(remains, point, towards)?;
-        let step = self.step();
-        let first = (enter / step).ceil().max(1.0) as usize;
-        let last = (leave.min(distance) / step).floor().max(1.0) as usize;
-        let mut met = Vec::new();
         let mut sum = 0.0;
-        for k in first..last {
-            let at = (k as f64 + 0.5) * step;
-            sum += self.extinction(table, point + towards * at) * step;
-            met.push((at, sum));
-        }
+        let met: Vec<(f64, f64)> = self
+            .steps(table, remains, point, towards, distance)
+            .map(|(at, depth)| {
+                sum += depth;
+                (at, sum)
+            })
+            .collect();
         let reaches = |share: f64| met.iter().find(|(_, met)| *met >= share * sum).map(|(at, _)| *at);
         (sum >= LITTLE).then(|| Some([reaches(ENDS)?, reaches(1.0 - ENDS)?])).flatten()
     }

@@ -110,6 +110,13 @@ fn views_and_looks_are_kept_named_moved_and_compared() {
     assert_eq!(names(&harness), ["View 4", "Look 1", "Look 2"]);
     assert!(settings(&harness).kept.iter().filter_map(Kept::as_look).count() == 2);
     wait_until_idle(&mut harness);
+    // They are there for the next volume, too, and drawn anew.
+    let ctx = harness.ctx.clone();
+    harness.state_mut().open("builtin:sphere:16", &ctx);
+    wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("sphere") && app.is_idle());
+    assert_eq!(names(&harness), ["View 4", "Look 1", "Look 2"]);
+    harness.run_steps(4);
+    assert!(harness.query_by_label("Go to Look 2").is_some());
 }
 
 #[test]
@@ -174,11 +181,11 @@ fn the_probe_names_a_cause_offers_cures_and_measures() {
     let other = middle + vec2(-24.0, -10.0);
     press(&mut harness, other, 1);
     harness.run_steps(4);
-    assert!(harness.query_by_label_contains("from the place before").is_some());
+    assert!(harness.query_by_label_contains("from the previous place").is_some());
     harness.key_press(Key::Escape);
     harness.remove_cursor();
     harness.run_steps(4);
-    assert!(harness.query_by_label_contains("from the place before").is_none());
+    assert!(harness.query_by_label_contains("from the previous place").is_none());
     // With no light there is a cause and a cure for it.
     harness.key_press(Key::M);
     harness.run_steps(2);
@@ -239,4 +246,26 @@ fn views_from_the_sides_show_all_of_the_object() {
     let camera = settings(&harness).camera;
     assert!(camera.distance * 1.001 >= object.least_distance(&camera), "{camera:?}");
     wait_until_idle(&mut harness);
+}
+
+#[test]
+fn small_and_large_windows_have_a_picture_and_all_panels() {
+    let mut harness = window();
+    harness.key_press_modifiers(Modifiers::SHIFT, Key::V);
+    for (size, scale) in [([640.0, 400.0], 1.0), ([1280.0, 800.0], 1.0), ([1920.0, 1080.0], 2.0)] {
+        harness.set_pixels_per_point(scale);
+        harness.input_mut().max_texture_side = Some(8192);
+        harness.set_size(size.into());
+        harness.run_steps(8);
+        wait_until_idle(&mut harness);
+        let window = Rect::from_min_size(eframe::egui::Pos2::ZERO, size.into());
+        let (picture, pixels) = harness.state().viewport_rect().expect("a picture");
+        assert!(window.contains_rect(picture), "{size:?}: {picture}");
+        assert!(picture.width() > 0.4 * size[0] && picture.height() > 0.1 * size[1], "{size:?}: {picture}");
+        assert_eq!(pixels[0], (picture.width() * scale).round() as u32, "{size:?}: as fine as the screen");
+        for label in ["File", "Help", "Eye", "+ View"] {
+            let part = harness.get_by_label(label).rect();
+            assert!(window.contains_rect(part), "{size:?}: {label} at {part}");
+        }
+    }
 }

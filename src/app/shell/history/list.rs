@@ -26,16 +26,20 @@ pub(crate) struct Listed {
 impl History {
     /// All steps back and forward.
     pub(super) fn steps(&self, now: &Step) -> Steps {
-        let copy = || Self { undoer: self.undoer.clone() };
         let names = |is_back: bool| {
-            let (mut history, mut at, mut names) = (copy(), now.clone(), Vec::new());
-            while let Some(name) = history.name(&at, is_back) {
-                names.push(name);
-                if is_back {
+            // Steps are looked at by taking them.
+            let mut history = Self { undoer: self.undoer.clone() };
+            let (mut at, mut names) = (now.clone(), Vec::new());
+            while if is_back { history.can_undo(&at) } else { history.can_redo(&at) } {
+                let before = at.clone();
+                let changed = if is_back {
                     history.undo(&mut at);
+                    text::changes::of(&at.settings, &before.settings)
                 } else {
                     history.redo(&mut at);
-                }
+                    text::changes::of(&before.settings, &at.settings)
+                };
+                names.push(changed.unwrap_or_else(|| text::changes::KIND_OF_DATA.to_owned()));
             }
             names
         };
@@ -55,8 +59,9 @@ impl App {
             return;
         }
         let now = self.step();
-        // Names are found by taking every step.
-        if self.listed.of.as_ref() != Some(&now) {
+        // Names are found by taking every step: not while something is dragged, which is no step yet.
+        let is_new = self.listed.of.is_none() || ctx.dragged_id().is_none();
+        if is_new && self.listed.of.as_ref() != Some(&now) {
             self.listed.steps = self.history.steps(&now);
             self.listed.of = Some(now);
         }
@@ -90,8 +95,9 @@ impl App {
 
     /// Goes so many steps forward, or back if they are negative.
     pub(in crate::app) fn go_steps(&mut self, steps: i32, ctx: &egui::Context) {
-        for _ in 0..steps.unsigned_abs() {
-            self.go(steps < 0, ctx);
+        // One word is enough for all of them.
+        for left in (0..steps.unsigned_abs()).rev() {
+            self.go(steps < 0, left == 0, ctx);
         }
     }
 }

@@ -146,10 +146,10 @@ impl App {
         Step { settings: self.settings.clone(), treated_as: self.treated.kind() }
     }
 
-    /// One step back, or one forward again; what reset buttons put back goes along.
-    pub(super) fn go(&mut self, is_back: bool, ctx: &egui::Context) {
+    /// One step back, or one forward again, with a word about it if it `says` so; what reset buttons put back goes along.
+    pub(super) fn go(&mut self, is_back: bool, says: bool, ctx: &egui::Context) {
         let mut step = self.step();
-        if let Some(what) = self.history.name(&step, is_back) {
+        if says && let Some(what) = self.history.name(&step, is_back) {
             self.messages.note(text::messages::went(is_back, &what));
         }
         if is_back {

@@ -116,6 +116,11 @@ impl App {
         if !warnings.is_empty() {
             self.messages.note(warnings.join("; "));
         }
+        let mut settings = settings;
+        // A look in which nothing is kept takes nothing away.
+        if settings.kept.is_empty() {
+            settings.kept.clone_from(&self.settings.kept);
+        }
         Ok(settings)
     }
 

@@ -205,6 +205,9 @@ impl App {
         let Opened { source, reading, dataset, too_many, renderer, settings, stamp } = opened;
         let volume = Arc::clone(dataset.volume());
         self.messages.clear();
+        self.strip.forget();
+        // What is kept is worth looking at on other volumes, too.
+        let kept = self.settings.kept.clone();
         let likeness = match (&self.pending, &self.volume) {
             (Some(PendingLook::IfAlike), Some(open)) => Likeness::of(open, &volume),
             _ => Likeness::Nothing,
@@ -279,6 +282,9 @@ impl App {
         if let Some(adjust) = self.adjust.take() {
             self.settings = adjust(std::mem::take(&mut self.settings));
             self.settings.sanitise();
+        }
+        if self.settings.kept.is_empty() {
+            self.settings.kept = kept;
         }
         // What somebody has chosen stays.
         self.first_lights = if is_named { FirstLights::default() } else { FirstLights::of(&self.settings) };

@@ -24,7 +24,11 @@ pub(crate) const BALANCED: &str = "Balanced (33 ms)";
 pub(crate) const SHARP: &str = "Sharp (66 ms)";
 pub(crate) const SHARPEST: &str = "Sharpest (200 ms)";
 
+/// How large everything is.
+pub(crate) const SIZE: &str = "Interface size";
+
 /// The colours of the window.
+pub(crate) const THEME: &str = "Theme";
 pub(crate) const DARK: &str = "Dark";
 pub(crate) const BRIGHT: &str = "Light";
 pub(crate) const AS_SYSTEM: &str = "Same as system";

@@ -81,7 +81,7 @@ pub(crate) fn absorbed(name: &str, share: f64, distance: Option<&str>) -> String
     let how = if share < 0.6 { "Dim" } else { "Dark" };
     let share = 100.0 * share;
     match distance {
-        Some(distance) => format!("{how}: {share:.0} % of {name} is absorbed {distance} before"),
+        Some(distance) => format!("{how}: {share:.0} % of {name} is absorbed {distance} before it arrives"),
         None => format!("{how}: {share:.0} % of {name} is absorbed on its way"),
     }
 }
@@ -93,7 +93,7 @@ pub(crate) fn length(length_mm: f64, unit: LengthUnit) -> String {
 
 /// How far it is from the place that was clicked before.
 pub(crate) fn apart(length: &str) -> String {
-    format!("{length} from the place before")
+    format!("{length} from the previous place")
 }
 
 pub(crate) const LET_THROUGH: Named =
@@ -114,3 +114,9 @@ pub(crate) const TURN_HERE: Named =
 pub(crate) const WIDEN_CONE: Named = named("Widen the cone", "The cone of the spotlight becomes 30° wider");
 pub(crate) const NO_CONE: Named = named("No spotlight", "It shines in all directions");
 pub(crate) const SWITCH_ON: Named = named("Switch it on", "The first light shines");
+
+/// Only the sky shines, of which a share is seen.
+pub(crate) fn under_sky(open: f64) -> String {
+    let how = if open < 0.4 { "Dim" } else { "Lit" };
+    format!("{how}: no light is on but the sky, of which {:.0} % is seen", 100.0 * open)
+}

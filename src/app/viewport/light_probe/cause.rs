@@ -15,6 +15,8 @@ pub(super) enum Cause {
     Lit { light: usize, share: f64 },
     /// No light is on.
     AllOff,
+    /// No light is on but the sky, of which that share is seen.
+    Sky { open: f64 },
     /// A light is on the other side of the surface.
     FacesAway { light: usize },
     /// It lies outside a light's cone.
@@ -40,7 +42,7 @@ impl Cause {
         let sum = |which: usize| parts.iter().map(|part| part[which]).sum::<f64>();
         let (arrives, could) = (sum(0), sum(1));
         if could <= 0.0 {
-            return Self::AllOff;
+            return found.sky.map_or(Self::AllOff, |open| Self::Sky { open });
         }
         let most = |of: &dyn Fn(&[f64; 2]) -> f64| {
             (0..parts.len()).max_by(|&a, &b| of(&parts[a]).total_cmp(&of(&parts[b]))).unwrap_or_default()
@@ -74,6 +76,7 @@ impl Cause {
         match self {
             Self::Lit { light, share } => text::probe::lit(name(light), share),
             Self::AllOff => text::probe::ALL_OFF.to_owned(),
+            Self::Sky { open } => text::probe::under_sky(open),
             Self::FacesAway { light } => text::probe::faces_away(name(light)),
             Self::OutsideCone { light } => text::probe::outside_cone(name(light)),
             Self::Grazing { light, angle_deg } => text::probe::grazing(name(light), angle_deg),
@@ -84,18 +87,27 @@ impl Cause {
         }
     }
 
-    /// What helps, the gentlest first.
-    pub(super) fn cures(self) -> Vec<Cure> {
-        match self {
+    /// What helps, the gentlest first: nothing that would change nothing.
+    pub(super) fn cures(self, settings: &Settings) -> Vec<Cure> {
+        let cures = match self {
             Self::Lit { .. } => Vec::new(),
-            Self::AllOff => vec![Cure::SwitchOn(0), Cure::MoreAmbient],
+            Self::Sky { .. } => vec![Cure::SwitchOn(0), Cure::Headlight],
+            Self::AllOff => vec![Cure::SwitchOn(0), Cure::Headlight, Cure::MoreAmbient],
             Self::FacesAway { light } => vec![Cure::Headlight, Cure::BothSides, Cure::TurnHere(light)],
             Self::OutsideCone { light } => vec![Cure::WidenCone(light), Cure::NoCone(light)],
             Self::Grazing { light, .. } => vec![Cure::Headlight, Cure::TurnHere(light), Cure::MoreAmbient],
             Self::Absorbed { light, .. } => {
                 vec![Cure::LetThrough, Cure::LiftShadows, Cure::NoShadowOf(light)]
             }
-        }
+        };
+        let helps = |cure: &Cure| {
+            // Where there is a sky, it takes the place of the light from everywhere.
+            let is_idle = *cure == Cure::MoreAmbient && settings.sky.is_on();
+            let mut after = settings.clone();
+            cure.apply(&mut after);
+            !is_idle && after != *settings
+        };
+        cures.into_iter().filter(helps).collect()
     }
 }
 
@@ -208,7 +220,7 @@ mod tests {
         settings.lights[0].name = "Key".to_owned();
         assert_eq!(words(&settings, vec![LIT]), "Lit: 90 % of Key arrives");
         let dark = Arrival { transmittance: 0.3, blocked: Some([0.24, 0.5]), ..LIT };
-        assert_eq!(words(&settings, vec![dark]), "Dark: 70 % of Key is absorbed 12.0 mm before");
+        assert_eq!(words(&settings, vec![dark]), "Dark: 70 % of Key is absorbed 12.0 mm before it arrives");
         let away = Arrival { facing: Some(-0.5), ..LIT };
         assert_eq!(words(&settings, vec![away]), "Dark: the surface faces away from Key");
         let outside = Arrival { hood: 0.0, ..LIT };
@@ -217,6 +229,13 @@ mod tests {
         assert_eq!(words(&settings, vec![low]), "Dim: Key falls in at only 12° to the surface");
         settings.lights[0].on = false;
         assert_eq!(words(&settings, vec![LIT]), "Dark: no light is on");
+        let under_sky = Probe { sky: Some(0.8), ..found(vec![LIT]) };
+        let cause = Cause::of(&settings, &under_sky);
+        assert_eq!(cause, Cause::Sky { open: 0.8 });
+        // What would change nothing is not offered.
+        assert_eq!(cause.cures(&settings), [Cure::SwitchOn(0), Cure::Headlight]);
+        settings.lights.clear();
+        assert_eq!(cause.cures(&settings), [Cure::Headlight]);
     }
 
     #[test]

@@ -9,6 +9,7 @@ use glam::DVec3;
 use self::cause::Cause;
 use self::tag::Tag;
 
+use crate::app::common::frame;
 use crate::app::common::theme;
 use crate::app::common::volume_facts::decimals;
 use crate::app::text::{self, common::LengthUnit};
@@ -30,6 +31,8 @@ pub(crate) struct LightProbe {
     pub on: bool,
     /// The last answer, and the question.
     last: Option<(Pos2, Settings, Option<Probe>)>,
+    /// The volume that all this is of.
+    of: Option<u64>,
     /// Places that were clicked, the latest last: at most two.
     pins: Vec<Pin>,
 }
@@ -54,11 +57,14 @@ impl LightProbe {
         volume: &Volume,
         Pointing { pointer, clicked }: Pointing,
     ) {
+        let of = Some(volume.content_id());
+        if !self.on || self.of != of {
+            (self.last, self.pins, self.of) = (None, Vec::new(), of);
+        }
         if !self.on {
-            (self.last, self.pins) = (None, Vec::new());
             return;
         }
-        if !self.pins.is_empty() && tag::is_left(ui) {
+        if !self.pins.is_empty() && frame::is_for_picture(ui.ctx()) {
             self.pins.clear();
         }
         if let Some(at) = pointer.filter(|_| clicked) {
@@ -106,6 +112,7 @@ impl LightProbe {
         });
         let shown = Tag {
             cause,
+            cures: cause.filter(|_| pinned.is_some()).map(|cause| cause.cures(settings)).unwrap_or_default(),
             sentence: cause.map_or_else(
                 || text::probe::NOTHING.to_owned(),
                 |cause| cause.words(settings, mm_per_unit, unit),

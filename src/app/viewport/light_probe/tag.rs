@@ -1,9 +1,10 @@
 //! The tag beside the pointer, or beside the place that was clicked: the cause in one sentence, what is known, and what
 //! helps.
 
-use eframe::egui::{self, Id, Key, Modifiers, Order, Pos2, Rect, RichText, Ui, Vec2, vec2};
+use eframe::egui::{self, Id, Order, Pos2, Rect, RichText, Ui, Vec2, vec2};
 
 use super::cause::{Cause, Cure};
+use crate::app::common::frame::PROBE_TAG;
 use crate::app::text;
 
 /// Points from the place to the tag.
@@ -14,6 +15,8 @@ const WIDEST: f32 = 320.0;
 /// What a tag says.
 pub(super) struct Tag {
     pub cause: Option<Cause>,
+    /// What helps.
+    pub cures: Vec<Cure>,
     /// The cause in words.
     pub sentence: String,
     /// What is known, a line each.
@@ -40,7 +43,7 @@ pub(super) fn show(ui: &Ui, picture: Rect, at: Pos2, tag: &Tag) -> Option<Cure> 
     };
     let side = |positive: bool| if positive { ASIDE } else { -ASIDE };
     let place = at + vec2(side(is_right), side(is_below));
-    let area = egui::Area::new(Id::unique("probe tag"))
+    let area = egui::Area::new(Id::unique(PROBE_TAG))
         .order(Order::Middle)
         .fixed_pos(place)
         .pivot(pivot)
@@ -61,12 +64,11 @@ pub(super) fn show(ui: &Ui, picture: Rect, at: Pos2, tag: &Tag) -> Option<Cure> 
                 return;
             }
             ui.weak(&tag.facts);
-            let cures = tag.cause.map(Cause::cures).unwrap_or_default();
-            if cures.is_empty() {
+            if tag.cures.is_empty() {
                 return;
             }
             ui.horizontal_wrapped(|ui| {
-                for cure in cures {
+                for &cure in &tag.cures {
                     let text::Named { name, tip } = cure.named();
                     if ui.button(name).on_hover_text(tip).clicked() {
                         chosen = Some(cure);
@@ -76,9 +78,4 @@ pub(super) fn show(ui: &Ui, picture: Rect, at: Pos2, tag: &Tag) -> Option<Cure> 
         });
     });
     chosen
-}
-
-/// Whether Escape was pressed, and nothing else has taken that.
-pub(super) fn is_left(ui: &Ui) -> bool {
-    ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape))
 }

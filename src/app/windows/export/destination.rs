@@ -36,6 +36,7 @@ pub(super) fn whole(path: &str) -> PathBuf {
 /// # Errors
 /// When there is none.
 pub(super) fn show_in_folder(file: &Path) -> std::io::Result<()> {
+    let file = &whole(&file.to_string_lossy());
     let folder = if file.is_dir() { file } else { file.parent().unwrap_or(file) };
     let mut command = if cfg!(target_os = "macos") {
         let mut open = Command::new("open");

@@ -90,8 +90,8 @@ impl Export {
     pub(crate) fn open(&mut self, viewport: [u32; 2], folder: Option<&Path>, volume: &str) {
         self.open = true;
         if !self.is_named {
-            let ending =
-                Path::new(&self.path).extension().map_or_else(|| "png".into(), std::ffi::OsStr::to_owned);
+            // A folder of pictures has no ending.
+            let ending = Path::new(&self.path).extension().map(std::ffi::OsStr::to_owned).unwrap_or_default();
             let name = Path::new(&destination::file_name(volume)).with_extension(ending);
             self.path = destination::folder(folder).join(name).display().to_string();
         }
