@@ -53,7 +53,7 @@ impl App {
             Command::CopyPicture => self.copy_picture(ctx),
             Command::KeepLook => self.keeps_look ^= true,
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
-            Command::Undo | Command::Redo => self.go(command == Command::Undo, true, ctx),
+            Command::Undo | Command::Redo => self.go(command == Command::Undo, ctx),
             Command::ToggleHistory => self.listed.open ^= true,
             Command::GoSteps(steps) => self.go_steps(steps, ctx),
             Command::ToggleMessages => self.messages.lists ^= true,

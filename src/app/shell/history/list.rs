@@ -96,8 +96,11 @@ impl App {
     /// Goes so many steps forward, or back if they are negative.
     pub(in crate::app) fn go_steps(&mut self, steps: i32, ctx: &egui::Context) {
         // One word is enough for all of them.
-        for left in (0..steps.unsigned_abs()).rev() {
-            self.go(steps < 0, left == 0, ctx);
+        for _ in 1..steps.unsigned_abs() {
+            self.take_step(steps < 0, ctx);
+        }
+        if steps != 0 {
+            self.go(steps < 0, ctx);
         }
     }
 }

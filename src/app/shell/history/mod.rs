@@ -146,12 +146,17 @@ impl App {
         Step { settings: self.settings.clone(), treated_as: self.treated.kind() }
     }
 
-    /// One step back, or one forward again, with a word about it if it `says` so; what reset buttons put back goes along.
-    pub(super) fn go(&mut self, is_back: bool, says: bool, ctx: &egui::Context) {
-        let mut step = self.step();
-        if says && let Some(what) = self.history.name(&step, is_back) {
+    /// One step back, or one forward again, with a word about it; what reset buttons put back goes along.
+    pub(super) fn go(&mut self, is_back: bool, ctx: &egui::Context) {
+        if let Some(what) = self.history.name(&self.step(), is_back) {
             self.messages.note(text::messages::went(is_back, &what));
         }
+        self.take_step(is_back, ctx);
+    }
+
+    /// As [`Self::go`], without a word.
+    fn take_step(&mut self, is_back: bool, ctx: &egui::Context) {
+        let mut step = self.step();
         if is_back {
             self.history.undo(&mut step);
         } else {
