@@ -13,7 +13,7 @@ pub(in crate::app) fn room(ctx: &egui::Context) -> Rect {
 }
 
 /// The tag of the probe, which lies below all windows and is none.
-pub(in crate::app) const PROBE_TAG: &str = "probe tag";
+pub(in crate::app) const PROBE_TAG: &str = "tag";
 
 /// The highest window.
 fn highest(ctx: &egui::Context) -> Option<egui::LayerId> {

@@ -1,6 +1,7 @@
 //! Looks as text: presets, sessions, the library, and what a picture says of how it was made.
 
 pub(super) mod bounds;
+mod kept_entries;
 pub(super) mod library;
 pub(super) mod made_by;
 pub(super) mod path_text;

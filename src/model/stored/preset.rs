@@ -5,11 +5,12 @@
 use serde_json::Value;
 
 use super::bounds::{self, Bounded};
+use super::kept_entries::leave_out_unreadable;
 use super::preset_error::PresetError;
 use super::renames::{current_path, rename};
 use super::schemas::{complete, keep_named_balance, lays_labels_anew, shows_values};
 use crate::data::plain;
-use crate::model::{Kept, LabelLook, LabelTable, MAX_NAME, SCHEMA, Settings};
+use crate::model::{LabelLook, LabelTable, MAX_NAME, SCHEMA, Settings};
 
 /// Unknown settings that are told one by one.
 const MAX_TOLD: usize = 8;
@@ -58,25 +59,6 @@ pub fn apply_json(settings: &Settings, overlay: &Value) -> Result<(Settings, Vec
         (left_out > 0).then(|| format!("{left_out} kept looks were left out: there is too much of them")),
     );
     Ok((result, warnings))
-}
-
-/// Leaves out of what is kept beside a look whatever is none of this version's views and looks: the rest stands. A warning
-/// for each.
-fn leave_out_unreadable(overlay: &mut Value) -> Vec<String> {
-    let Some(Value::Array(kept)) = overlay.get_mut("kept") else { return Vec::new() };
-    let mut warnings = Vec::new();
-    let mut at = 0;
-    kept.retain(|entry| {
-        at += 1;
-        match serde_json::from_value::<Kept>(entry.clone()) {
-            Ok(_) => true,
-            Err(err) => {
-                warnings.push(format!("the kept view or look {at} was left out: {err}"));
-                false
-            }
-        }
-    });
-    warnings
 }
 
 /// Reads a preset or session text and lays it over settings; see [`apply_json`].
@@ -255,29 +237,6 @@ mod tests {
         assert_eq!(settings.shadows.strength, 0.5);
         assert_eq!(settings.shadows.gain, 1.0);
         assert_eq!(warnings, ["unknown setting `shadows.glow` was ignored"]);
-    }
-
-    #[test]
-    fn of_what_is_kept_only_the_unreadable_is_left_out() {
-        let mut kept = Settings::default();
-        assert!(kept.keep_view_under(3, "front"));
-        let look = Kept::look("bone", &kept);
-        assert!(kept.keep(look));
-        let mut tree = serde_json::to_value(&kept).unwrap();
-        let odd = [
-            r#"{"name": "a", "digit": 300, "what": {"view": {}}}"#,
-            r#"{"what": 3}"#,
-            r#"{"name": "b", "what": {"film": {}}}"#,
-        ];
-        let mut list = tree["kept"].as_array().unwrap().clone();
-        for text in odd {
-            list.insert(1, serde_json::from_str(text).unwrap());
-        }
-        tree["kept"] = Value::Array(list);
-        let (read, warnings) = load_json(&Settings::default(), &tree.to_string()).unwrap();
-        assert_eq!(read, kept);
-        let told = warnings.iter().filter(|warning| warning.contains("was left out")).count();
-        assert_eq!(told, odd.len(), "{warnings:?}");
     }
 
     #[test]
