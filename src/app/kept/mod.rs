@@ -106,12 +106,15 @@ impl App {
             let look = self.settings.kept.get(at).and_then(Kept::as_look)?;
             Some(Variant::Look(Box::new(look.clone())))
         };
+        let name = |at: usize| self.settings.kept.get(at).map(|kept| kept.name.clone());
+        let names = [left.and_then(name), name(right)];
         let left = match left {
             Some(at) => look(at),
             None => Some(Variant::Current),
         };
         if let Some((left, right)) = left.zip(look(right)) {
             (self.compare.on, self.compare.left, self.compare.right) = (true, left, right);
+            self.compare.names = names;
         }
     }
 

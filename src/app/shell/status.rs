@@ -7,6 +7,7 @@ use crate::app::common::commands::Command;
 use crate::app::common::theme;
 use crate::app::text;
 use crate::app::viewport::{Doing, Facts};
+use crate::app::windows::export::Unseen;
 use crate::app::worker::loader::LoadProgress;
 use crate::data::plain;
 
@@ -18,7 +19,7 @@ pub(crate) fn show(
     ui: &mut egui::Ui,
     facts: &Facts,
     opening: Option<LoadProgress<'_>>,
-    exporting: Option<(u32, u32)>,
+    exporting: Option<Unseen>,
     messages: &mut Messages,
     commands: &mut Vec<Command>,
 ) {
@@ -41,8 +42,8 @@ pub(crate) fn show(
             } else {
                 doing(ui, facts.doing);
             }
-            if let Some((done, total)) = exporting {
-                export(ui, done, total, commands);
+            if let Some(exporting) = exporting {
+                export(ui, exporting, commands);
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 // All that was said, for who was not quick enough.
@@ -61,7 +62,7 @@ pub(crate) fn show(
 }
 
 /// How far an export is, whose window may be closed.
-fn export(ui: &mut egui::Ui, done: u32, total: u32, commands: &mut Vec<Command>) {
+fn export(ui: &mut egui::Ui, Unseen { done, total, left }: Unseen, commands: &mut Vec<Command>) {
     ui.separator();
     // First, so that it stays where it is while pictures are counted.
     if ui.small_button(text::common::CANCEL).clicked() {
@@ -73,7 +74,9 @@ fn export(ui: &mut egui::Ui, done: u32, total: u32, commands: &mut Vec<Command>)
     } else {
         ui.spinner();
     }
-    if ui.link(text::status::exporting(done, total)).on_hover_text(text::status::EXPORTING_TIP).clicked() {
+    let words = text::status::exporting(done, total);
+    let words = left.map_or(words.clone(), |left| format!("{words}, {}", text::export::left(left)));
+    if ui.link(words).on_hover_text(text::status::EXPORTING_TIP).clicked() {
         commands.push(Command::Export);
     }
 }

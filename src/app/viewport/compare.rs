@@ -30,13 +30,22 @@ pub(crate) struct Compare {
     pub right: Variant,
     /// Show what lies between them instead.
     pub difference: bool,
+    /// What the looks on the left and on the right are called, where they are looks that have names.
+    pub names: [Option<String>; 2],
     /// The divider's place, as a share of the width.
     divider: f32,
 }
 
 impl Default for Compare {
     fn default() -> Self {
-        Self { on: false, left: Variant::Current, right: Variant::Off, difference: false, divider: 0.5 }
+        Self {
+            on: false,
+            left: Variant::Current,
+            right: Variant::Off,
+            difference: false,
+            names: [None, None],
+            divider: 0.5,
+        }
     }
 }
 
@@ -44,6 +53,7 @@ impl Compare {
     /// Shows the current look on the left and another one on the right.
     pub(crate) fn with(&mut self, look: Settings) {
         (self.on, self.left, self.right) = (true, Variant::Current, Variant::Look(Box::new(look)));
+        self.names = [None, None];
     }
 
     /// What is to be rendered: the look, or the left and the right one.
@@ -91,7 +101,11 @@ impl Compare {
         if !self.difference {
             self.divide(ui, rect);
         }
-        let [left, right] = [&self.left, &self.right].map(text::compared::variant);
+        let called = |variant: &Variant, at: usize| match (variant, &self.names[at]) {
+            (Variant::Look(_), Some(name)) => name.clone(),
+            _ => text::compared::variant(variant).to_owned(),
+        };
+        let (left, right) = (&*called(&self.left, 0), &*called(&self.right, 1));
         let label = |at: Pos2, align: Align2, text: &str| chip(ui, at, align, text);
         let top = rect.top() + MARGIN;
         if self.difference {

@@ -278,3 +278,36 @@ fn pictures_that_are_shown_again_are_the_same_bytes() {
     let anew = fresh.render(&bench.dataset, &light, SIZE, &RenderOptions::default()).expect("a picture");
     assert_eq!(anew, shown);
 }
+
+/// A picture is the same whatever was drawn before it on the same renderer, as contact sheets do it.
+#[test]
+fn a_picture_does_not_depend_on_the_one_before() {
+    use chiaroscuro::data::Histogram;
+    use chiaroscuro::data::synthetic::builtin;
+    use chiaroscuro::model::auto::first_settings;
+    use chiaroscuro::model::{Kernel, Resolution, Slabs};
+    let volume = builtin("chair", Some(48)).unwrap();
+    let mut whole = first_settings(&volume, &Histogram::of(&volume));
+    whole.shadows.resolution = Resolution::Half;
+    (whole.shadows.kernel, whole.sampling.kernel) = (Kernel::Prefiltered, Kernel::Prefiltered);
+    whole.sampling.slabs = Slabs::Even;
+    let mut cut = whole.clone();
+    cut.cuts.plane.on = true;
+    let dataset = Dataset::new(volume);
+    let options = RenderOptions::default();
+    let mut one_after_the_other = Renderer::new(&context()).unwrap();
+    let mut draw = |settings: &Settings| {
+        one_after_the_other.render_shown(&dataset, settings, [88, 66], &options).expect("a picture")
+    };
+    let before = draw(&whole);
+    draw(&cut);
+    let after = draw(&whole);
+    draw(&cut);
+    let mut turned = cut.clone();
+    turned.camera.azimuth_deg += 70.0;
+    draw(&turned);
+    let again = draw(&whole);
+    let mut fresh = Renderer::new(&context()).unwrap();
+    let alone = fresh.render_shown(&dataset, &whole, [88, 66], &options).expect("a picture");
+    assert!(before == alone && after == alone && again == alone);
+}

@@ -43,6 +43,17 @@ pub(crate) enum Request {
     NoFolder(String),
 }
 
+/// How far an export is whose window does not say so.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Unseen {
+    /// Pictures, or parts of one, that are done.
+    pub done: u32,
+    /// That are to be made.
+    pub total: u32,
+    /// How long the rest takes, where that can be told.
+    pub left: Option<Duration>,
+}
+
 /// What is to be exported, and its progress.
 #[derive(Debug)]
 pub(crate) struct Export {
@@ -126,9 +137,13 @@ impl Export {
 
     /// How many pictures, or parts of one, are done and are to be made, where the window does not say so; `None` while
     /// nothing is made.
-    pub(crate) fn progress_unseen(&self) -> Option<(u32, u32)> {
+    pub(crate) fn progress_unseen(&self) -> Option<Unseen> {
         let Progress { done, total, cancelled: _ } = &*self.progress;
-        (self.is_busy() && !self.open).then(|| (done.load(Ordering::Relaxed), total.load(Ordering::Relaxed)))
+        (self.is_busy() && !self.open).then(|| Unseen {
+            done: done.load(Ordering::Relaxed),
+            total: total.load(Ordering::Relaxed),
+            left: self.left(),
+        })
     }
 
     /// How long it will take until it is done, where that can be told.
