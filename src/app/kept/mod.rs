@@ -33,8 +33,8 @@ impl App {
 
     fn keep_in_strip(&mut self, kept: Kept) {
         let note = text::kept::kept(&kept.name);
-        self.has_kept(self.settings.clone().keep(kept.clone()), note);
-        self.settings.keep(kept);
+        let has_room = self.settings.keep(kept);
+        self.has_kept(has_room, note);
     }
 
     /// Keeps the view that is shown under a digit.
@@ -128,11 +128,13 @@ impl App {
 
     /// Small pictures of what is kept are made while nothing else is done.
     fn draw_kept(&mut self, ctx: &egui::Context) {
-        let id = self.viewport.dataset().map(|dataset| dataset.volume().content_id());
         self.strip.thumbnails.take(ctx);
+        if !self.layout.kept {
+            return;
+        }
+        let id = self.viewport.dataset().map(|dataset| dataset.volume().content_id());
         let Some(wanted) = self.strip.thumbnails.wanted(&self.settings, id) else { return };
-        if self.layout.kept
-            && self.is_complete()
+        if self.is_complete()
             && !self.export.is_busy()
             && let Some(subject) = self.subject()
             && let Err(err) = self.strip.thumbnails.start(wanted, subject, ctx)

@@ -185,9 +185,6 @@ impl Strip {
                 .layout(egui::Layout::top_down(Align::Center)),
         );
         row.add(egui::Label::new(egui::RichText::new(&kept.name).small()).truncate().selectable(false));
-        if response.has_focus() && ui.input(|input| input.key_pressed(Key::Enter)) {
-            ui.request_repaint();
-        }
         response.on_hover_text(text::kept::tip(&kept.name, is_look, kept.digit))
     }
 

@@ -20,35 +20,34 @@ pub(super) fn is_active(title: &str, settings: &Settings, compares: bool) -> boo
 /// Puts the settings of a section back to what they were at first; sections that belong to the file, or that show two
 /// looks, have nothing to put back.
 pub(super) fn put_back(title: &str, settings: &mut Settings, first: &Settings) {
-    let first = first.clone();
     match title {
-        LABELS => settings.labels = first.labels,
+        LABELS => settings.labels = first.labels.clone(),
         // Lights stand around the object as it stood.
-        LIGHTS if settings.camera.up == first.camera.up => settings.lights = first.lights,
+        LIGHTS if settings.camera.up == first.camera.up => settings.lights.clone_from(&first.lights),
         SHADOWS => {
             // The balance is measured, and not set.
             let Shadows { balance, keep_balanced, .. } = settings.shadows;
-            settings.shadows = Shadows { balance, keep_balanced, ..first.shadows };
-            (settings.lighting, settings.opacity_unit) = (first.lighting, first.opacity_unit);
+            settings.shadows = Shadows { balance, keep_balanced, ..first.shadows.clone() };
+            (settings.lighting, settings.opacity_unit) = (first.lighting.clone(), first.opacity_unit);
         }
-        SOFT_LIGHT => (settings.sky, settings.scattering) = (first.sky, first.scattering),
-        SHADING => (settings.shading, settings.output) = (first.shading, first.output),
-        CUTS => settings.cuts = first.cuts,
+        SOFT_LIGHT => (settings.sky, settings.scattering) = (first.sky.clone(), first.scattering.clone()),
+        SHADING => (settings.shading, settings.output) = (first.shading.clone(), first.output.clone()),
+        CUTS => settings.cuts = first.cuts.clone(),
         FLOOR => {
             let height = settings.floor.height;
-            settings.floor = first.floor;
+            settings.floor = first.floor.clone();
             if settings.camera.up != first.camera.up {
                 settings.floor.height = height;
             }
         }
         CAMERA => {
-            settings.sampling = first.sampling;
+            settings.sampling = first.sampling.clone();
             settings.camera.projection = first.camera.projection;
             settings.camera.fov_y_deg = first.camera.fov_y_deg;
             settings.camera.roll_deg = first.camera.roll_deg;
             // As the object stands now.
             if first.camera.up == settings.camera.up {
-                settings.camera = first.camera;
+                settings.camera.clone_from(&first.camera);
             }
         }
         _ => {}

@@ -5,7 +5,7 @@ mod rays;
 
 use glam::DVec3;
 
-use self::rays::Rays;
+use self::rays::{Rays, Way};
 use crate::data::Volume;
 use crate::math::luminance;
 use crate::model::{BakedTransfer, LightKind, SceneLight, Settings, Sides};
@@ -77,7 +77,8 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
             return 1.0;
         }
         let left = |towards: DVec3| {
-            let depth = rays.optical_depth(&lighting, &shading_cut, point, towards, f64::INFINITY);
+            let depth =
+                rays.optical_depth(&lighting, &shading_cut, Way { point, towards, distance: f64::INFINITY });
             (-depth * settings.sky.density_scale).exp()
         };
         // Of a surface, the share of the half of the sky that it faces, each direction by its cosine.
@@ -97,9 +98,9 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
             let mean =
                 |of: &dyn Fn(&SceneLight) -> f64| points.iter().map(of).sum::<f64>() / points.len() as f64;
             let left = |light: &SceneLight| {
-                let (towards, distance) = towards(light, point);
+                let way = way(light, point);
                 let of_color = |table: &BakedTransfer| {
-                    let depth = rays.optical_depth(table, &shading_cut, point, towards, distance);
+                    let depth = rays.optical_depth(table, &shading_cut, way);
                     (-depth * light.density_scale).exp()
                 };
                 match &met_by_colors {
@@ -109,12 +110,11 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
             };
             let through_hood = |light: &SceneLight| {
                 let cone = light.cone();
-                cone.share(cone.axis.dot(-towards(light, point).0))
+                cone.share(cone.axis.dot(-way(light, point).towards))
             };
-            let (middle, distance) = towards(&light, point);
-            let blocked =
-                is_shadowed.then(|| rays.blocked(&lighting, &shading_cut, point, middle, distance)).flatten();
-            let facing = normal.dot(middle);
+            let middle = way(&light, point);
+            let blocked = is_shadowed.then(|| rays.blocked(&lighting, &shading_cut, middle)).flatten();
+            let facing = normal.dot(middle.towards);
             let facing = if is_one_sided && light.casts_shadows { facing } else { facing.abs() };
             Arrival {
                 transmittance: if is_shadowed { mean(&left) } else { 1.0 },
@@ -135,15 +135,16 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
     })
 }
 
-/// Where a light is as seen from a point, a unit vector, and how far away.
-fn towards(light: &SceneLight, point: DVec3) -> (DVec3, f64) {
-    match light.kind {
+/// The way from a point to a light.
+fn way(light: &SceneLight, point: DVec3) -> Way {
+    let (towards, distance) = match light.kind {
         LightKind::Parallel => (light.direction(), f64::INFINITY),
         LightKind::Perspective => {
             let away = DVec3::from(light.position) - point;
             (away.normalize_or(DVec3::Z), away.length())
         }
-    }
+    };
+    Way { point, towards, distance }
 }
 
 #[cfg(test)]

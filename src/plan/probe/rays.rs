@@ -21,6 +21,17 @@ const ENDS: f64 = 0.25;
 /// Voxel edges (the smallest) per step of a ray.
 const STEP: f64 = 0.5;
 
+/// The way from a point towards a light.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Way {
+    /// Where it begins, in scene space.
+    pub(super) point: DVec3,
+    /// Of length 1.
+    pub(super) towards: DVec3,
+    /// How far away the light is, in scene units; it may be infinitely far.
+    pub(super) distance: f64,
+}
+
 /// A volume and what makes it visible, for single rays.
 pub(super) struct Rays<'a> {
     pub(super) volume: &'a Volume,
@@ -77,14 +88,8 @@ impl Rays<'_> {
 
     /// Steps from one beyond a point towards a light, each as its distance and the optical depth of what it meets: what is
     /// seen does not shade itself.
-    fn steps(
-        &self,
-        table: &BakedTransfer,
-        remains: &Region,
-        point: DVec3,
-        towards: DVec3,
-        distance: f64,
-    ) -> impl Iterator<Item = (f64, f64)> {
+    fn steps(&self, table: &BakedTransfer, remains: &Region, way: Way) -> impl Iterator<Item = (f64, f64)> {
+        let Way { point, towards, distance } = way;
         let step = self.step();
         // Where there is nothing on the way there are no steps.
         let (enter, leave) = self.span(remains, point, towards).unwrap_or_default();
@@ -97,30 +102,16 @@ impl Rays<'_> {
     }
 
     /// ∫ extinction from a step beyond a point towards a light.
-    pub(super) fn optical_depth(
-        &self,
-        table: &BakedTransfer,
-        remains: &Region,
-        point: DVec3,
-        towards: DVec3,
-        distance: f64,
-    ) -> f64 {
-        self.steps(table, remains, point, towards, distance).map(|(_, depth)| depth).sum()
+    pub(super) fn optical_depth(&self, table: &BakedTransfer, remains: &Region, way: Way) -> f64 {
+        self.steps(table, remains, way).map(|(_, depth)| depth).sum()
     }
 
     /// Between which distances from a point towards a light all but a quarter of its loss at either end happens; none where
     /// hardly anything is lost.
-    pub(super) fn blocked(
-        &self,
-        table: &BakedTransfer,
-        remains: &Region,
-        point: DVec3,
-        towards: DVec3,
-        distance: f64,
-    ) -> Option<[f64; 2]> {
+    pub(super) fn blocked(&self, table: &BakedTransfer, remains: &Region, way: Way) -> Option<[f64; 2]> {
         let mut sum = 0.0;
         let met: Vec<(f64, f64)> = self
-            .steps(table, remains, point, towards, distance)
+            .steps(table, remains, way)
             .map(|(at, depth)| {
                 sum += depth;
                 (at, sum)
