@@ -4,13 +4,14 @@ use chiaroscuro::data::Histogram;
 use chiaroscuro::data::synthetic::builtin;
 use chiaroscuro::gpu::{RenderOptions, Renderer, mean_luminance};
 use chiaroscuro::model::{
-    Kernel, LightPlace, LightShape, NearField, Resolution, Settings, SkyMode, auto, key_and_fill,
+    Kernel, LightPlace, LightShape, NearField, Resolution, Settings, SkyMode, Slabs, auto, key_and_fill,
 };
 use chiaroscuro::plan::{Request, preview_slab};
 
-use crate::common::{Dataset, context};
+use crate::common::{Dataset, context, render};
+use crate::compare::{compare, flat32};
 use crate::scenes::seen_as_earlier;
-use crate::thresholds::{PREVIEW_BRIGHTNESS, PREVIEW_BRIGHTNESS_ASIDE, PREVIEW_UNEXPOSED};
+use crate::thresholds::{PREVIEW_BRIGHTNESS, PREVIEW_BRIGHTNESS_ASIDE, PREVIEW_STRIPES, PREVIEW_UNEXPOSED};
 
 const SIZE: [u32; 2] = [192, 144];
 
@@ -113,6 +114,35 @@ fn previews_stay_as_bright_as_pictures() {
                 assert!(drift <= most, "{name} / {scale}, {resolution:?}, {angle_deg}°: {drift}");
             }
         }
+    }
+}
+
+/// Faces that are seen at a steep angle are as even as with thin slabs, at any distance; with slabs as thick as two
+/// voxels they are not.
+#[test]
+fn previews_of_flat_faces_show_no_stripes() {
+    let context = context();
+    let volume = builtin("chair", Some(64)).expect("a volume");
+    let mut settings = auto::first_settings(&volume, &Histogram::of(&volume));
+    let loaded = Dataset::new(volume);
+    let mut renderer = Renderer::new(&context).expect("a renderer");
+    settings.sampling.kernel = Kernel::Prefiltered;
+    settings.sampling.slabs = Slabs::Even;
+    (settings.camera.azimuth_deg, settings.camera.elevation_deg) = (30.0, 50.0);
+    let size = SIZE.map(|n| n / 2);
+    for distance in [1.0, 1.7] {
+        let mut settings = settings.clone();
+        settings.camera.distance *= distance;
+        let mut picture = |slab: f64| {
+            let mut settings = settings.clone();
+            settings.sampling.slab = slab;
+            flat32(&render(&mut renderer, &loaded, &settings, size).light)
+        };
+        let thin = picture(0.25);
+        let slab = preview_slab(&settings.camera, &loaded.volume().scene(), size, 0.5);
+        let what = format!("{distance} times as far, slabs of {slab:.2}");
+        compare(&what, &picture(slab), &thin, PREVIEW_STRIPES).unwrap_or_else(|err| panic!("{err}"));
+        assert!(compare("thick", &picture(2.0), &thin, PREVIEW_STRIPES).is_err(), "{distance}");
     }
 }
 
