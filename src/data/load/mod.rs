@@ -6,6 +6,7 @@
 //! itself and one block.
 
 mod formats;
+mod large_pages;
 mod neighbour;
 mod reading;
 #[cfg(test)]

@@ -10,6 +10,7 @@ use bytemuck::Pod;
 use super::{Endian, LoadControl, LoadError};
 use crate::data::attempt::{Attempt, quoted};
 use crate::data::attempt::{Extent, human_bytes};
+use crate::data::load::large_pages::expect_to_fill;
 use crate::data::{Samples, VoxelType};
 use crate::fault;
 
@@ -268,14 +269,19 @@ pub(super) fn read_block<T: Sample>(
 
 /// So many values of 0, or an error where the memory is not there. It is taken as it is written to.
 pub(in crate::data::load) fn zeroed<T: Pod>(count: usize) -> Result<Vec<T>, Fault> {
-    bytemuck::allocation::try_zeroed_vec(count).map_err(|()| Fault::NoMemory)
+    let mut values = bytemuck::allocation::try_zeroed_vec(count).map_err(|()| Fault::NoMemory)?;
+    expect_to_fill(values.as_mut_ptr(), count);
+    Ok(values)
 }
 
 /// An empty vector with room for `count` values, or an error where the memory is not there.
 pub(in crate::data::load) fn reserve<T>(count: usize) -> Result<Vec<T>, Fault> {
     let mut values = Vec::new();
     match values.try_reserve_exact(count) {
-        Ok(()) => Ok(values),
+        Ok(()) => {
+            expect_to_fill::<T>(values.as_mut_ptr(), count);
+            Ok(values)
+        }
         Err(_) => Err(Fault::NoMemory),
     }
 }
