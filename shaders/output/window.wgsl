@@ -10,6 +10,9 @@ override LINEAR_TARGET: bool = false;
 @group(0) @binding(0) var picture: texture_2d<f32>;
 @group(0) @binding(1) var picture_sampler: sampler;
 
+// What stands for pictures that are not moved (src/gpu/output/window.rs).
+const MOVED_BY_NOTHING = 32768;
+
 struct Corner {
     @builtin(position) position: vec4f,
     // In the picture: 0 … 1 from the upper left.
@@ -32,11 +35,14 @@ fn for_target(srgb: vec3f) -> vec3f {
     return srgb;
 }
 
-// An opaque picture; its number is its opacity in 255ths.
+// An opaque picture. The low byte of its number is its opacity in 255ths; above, half of the number of pixels that it
+// could have, plus those by which it is moved to the right.
 @fragment
 fn shown(at: Corner) -> @location(0) vec4f {
-    let opacity = f32(at.number) / 255.0;
-    return vec4f(for_target(textureSampleLevel(picture, picture_sampler, at.place, 0.0).rgb) * opacity, opacity);
+    let opacity = f32(at.number & 255u) / 255.0;
+    let moved = f32(i32(at.number >> 8u) - MOVED_BY_NOTHING) / f32(textureDimensions(picture).x);
+    let place = at.place - vec2f(moved, 0.0);
+    return vec4f(for_target(textureSampleLevel(picture, picture_sampler, place, 0.0).rgb) * opacity, opacity);
 }
 
 // One colour; its number is 0xBBGGRR.

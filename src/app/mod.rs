@@ -60,6 +60,7 @@ use self::viewport::light_handles::LightHandles;
 use self::viewport::light_probe::LightProbe;
 use self::viewport::orbit::Orbit;
 use self::viewport::overlay::Overlay;
+use self::viewport::turning::Turning;
 use self::viewport::{Viewport, paint_callback};
 use self::windows::chooser::Chooser;
 use self::windows::contact_sheet::ContactSheet;
@@ -137,6 +138,7 @@ pub struct App {
     compare: Compare,
     overlay: Overlay,
     orbit: Orbit,
+    turning: Turning,
     probe: LightProbe,
     palette: Palette,
     light_slice: LightSlice,
@@ -301,9 +303,11 @@ impl eframe::App for App {
         self.history.observe(&ctx, &self.step());
         commands.extend(self.take_framed());
         commands.extend(self.follow_outline(&ctx));
+        let before = self.settings.camera.clone();
         for command in commands {
             self.execute(command, frame, &ctx);
         }
+        self.turning.begin(&before, &self.settings.camera, ctx.input(|input| input.time));
         self.leave_picture_only(&ctx);
         self.follow_corrections(&ctx);
         self.finish_first_look(&ctx);

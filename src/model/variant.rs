@@ -1,6 +1,6 @@
-//! Looks to compare with: the same scene and camera, with something else between them.
+//! Looks to compare with: the same scene and camera, with something else between them; or the same from elsewhere.
 
-use crate::model::{Engine, ObjectTurn, Settings, ShadowAlgorithm};
+use crate::model::{Camera, Engine, ObjectTurn, Settings, ShadowAlgorithm};
 
 /// How a look differs from the current one.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +21,8 @@ pub enum Variant {
     FirstTouch,
     /// Another look altogether, under the current camera.
     Look(Box<Settings>),
+    /// The current look from elsewhere.
+    View(Box<Camera>),
 }
 
 impl Variant {
@@ -39,6 +41,7 @@ impl Variant {
             Self::Scatter => "scatter",
             Self::FirstTouch => "first-touch",
             Self::Look(_) => "look",
+            Self::View(_) => "view",
         }
     }
 
@@ -74,6 +77,12 @@ impl Variant {
                 // It is of the same file.
                 settings.volume = current.volume;
             }
+            Self::View(camera) => {
+                if camera.up != current.camera.up {
+                    settings.turn_object(ObjectTurn::Upright(camera.up));
+                }
+                settings.camera = Camera::clone(camera);
+            }
         }
         settings
     }
@@ -108,6 +117,18 @@ mod tests {
             settings.camera.scene_from_view().transpose() * DVec3::from(light)
         };
         assert!((seen(&shown) - seen(&look)).length() < 1e-9);
+    }
+
+    #[test]
+    fn views_differ_from_the_picture_in_where_the_eye_is_alone() {
+        let current = Settings::default();
+        let elsewhere = Camera { azimuth_deg: 123.0, distance: 2.5, ..current.camera.clone() };
+        let shown = Variant::View(Box::new(elsewhere.clone())).of(&current);
+        assert_eq!(shown, Settings { camera: elsewhere.clone(), ..current.clone() });
+        // Of an object that stands otherwise: light comes from where the viewer had it.
+        let lying = Camera { up: SceneAxis::MinusX, ..elsewhere };
+        let shown = Variant::View(Box::new(lying.clone())).of(&current);
+        assert!(shown.camera == lying && shown.lights != current.lights);
     }
 
     #[test]

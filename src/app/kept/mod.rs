@@ -100,19 +100,21 @@ impl App {
         }
     }
 
-    /// Shows two looks to either side of a divider: two that are kept, or the picture and one.
+    /// Shows two views or looks to either side of a divider: two that are kept, or the picture and one.
     pub(in crate::app) fn compare_kept(&mut self, left: Option<usize>, right: usize) {
-        let look = |at: usize| {
-            let look = self.settings.kept.get(at).and_then(Kept::as_look)?;
-            Some(Variant::Look(Box::new(look.clone())))
+        let variant = |at: usize| {
+            self.settings.kept.get(at).map(|kept| match kept.as_look() {
+                Some(look) => Variant::Look(Box::new(look.clone())),
+                None => Variant::View(Box::new(kept.camera().clone())),
+            })
         };
         let name = |at: usize| self.settings.kept.get(at).map(|kept| kept.name.clone());
         let names = [left.and_then(name), name(right)];
         let left = match left {
-            Some(at) => look(at),
+            Some(at) => variant(at),
             None => Some(Variant::Current),
         };
-        if let Some((left, right)) = left.zip(look(right)) {
+        if let Some((left, right)) = left.zip(variant(right)) {
             (self.compare.on, self.compare.left, self.compare.right) = (true, left, right);
             self.compare.names = names;
         }

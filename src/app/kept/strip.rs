@@ -93,7 +93,7 @@ impl Strip {
     }
 
     fn items(&mut self, ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Command>) {
-        self.marked.retain(|&at| settings.kept.get(at).is_some_and(|kept| kept.as_look().is_some()));
+        self.marked.retain(|&at| at < settings.kept.len());
         let mut act = None;
         let mut places = Vec::new();
         for at in 0..settings.kept.len() {
@@ -129,7 +129,7 @@ impl Strip {
         match act {
             None => {}
             Some((at, Act::Go)) => commands.push(Command::GoToKept(at, false)),
-            Some((at, Act::Mark)) => self.mark(at, settings, commands),
+            Some((at, Act::Mark)) => self.mark(at, commands),
             Some((from, Act::Move(to))) => {
                 self.marked.clear();
                 let kept = settings.kept.remove(from);
@@ -188,11 +188,8 @@ impl Strip {
         response.on_hover_text(text::kept::tip(&kept.name, is_look, kept.digit))
     }
 
-    /// Marks a look, or takes the mark away; the second one is compared with the first.
-    fn mark(&mut self, at: usize, settings: &Settings, commands: &mut Vec<Command>) {
-        if settings.kept.get(at).is_none_or(|kept| kept.as_look().is_none()) {
-            return;
-        }
+    /// Marks something, or takes the mark away; the second one is compared with the first.
+    fn mark(&mut self, at: usize, commands: &mut Vec<Command>) {
         if let Some(known) = self.marked.iter().position(|&marked| marked == at) {
             self.marked.remove(known);
             return;
@@ -241,11 +238,11 @@ fn menu(ui: &mut Ui, at: usize, settings: &mut Settings, commands: &mut Vec<Comm
         commands.push(Command::ReplaceKept(at));
         close = true;
     }
-    if is_look && button(ui, text::kept::COMPARE) {
+    if button(ui, text::kept::COMPARE) {
         commands.push(Command::CompareKept(None, at));
         close = true;
     }
-    if is_look && button(ui, text::kept::MARK) {
+    if button(ui, text::kept::MARK) {
         act = Some(Act::Mark);
         close = true;
     }

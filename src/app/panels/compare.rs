@@ -28,7 +28,7 @@ pub(super) fn show(ui: &mut Ui, compare: &mut Compare, settings: &mut Settings, 
             commands.push(Command::CompareWithFile);
         }
     });
-    if let Variant::Look(_) = &compare.right {
+    if let Variant::Look(_) | Variant::View(_) = &compare.right {
         unlabelled(ui, |ui| {
             let take = text::compared::TAKE_RIGHT;
             if ui.button(take.name).on_hover_text(take.tip).clicked() {
@@ -48,7 +48,7 @@ fn side(ui: &mut Ui, named: Named, variant: &mut Variant) {
                 let label = text::compared::variant(&choice);
                 ui.selectable_value(variant, choice, label);
             }
-            if let Variant::Look(_) = variant {
+            if let Variant::Look(_) | Variant::View(_) = variant {
                 ui.selectable_label(true, text::compared::variant(variant)).clicked();
             }
         });

@@ -15,6 +15,7 @@ use crate::app::viewport::light_handles::LightHandles;
 use crate::app::viewport::light_probe::{LightProbe, Pointing};
 use crate::app::viewport::orbit::Orbit;
 use crate::app::viewport::overlay::{Overlay, crop_frame};
+use crate::app::viewport::turning::Turning;
 use crate::app::viewport::view_projection::ViewProjection;
 use crate::app::viewport::{Facts, Viewport, light_chips, light_probe, nothing_seen, orbit};
 use crate::app::windows::slices::Slices;
@@ -44,6 +45,8 @@ pub(crate) struct PictureInputs<'a> {
     pub probe: &'a mut LightProbe,
     /// How the eye goes round.
     pub orbit: &'a mut Orbit,
+    /// What is shown on the way from view to view.
+    pub turning: &'a mut Turning,
     /// Where the object ends, if that is known.
     pub outline: Option<&'a Outline>,
     /// The shape of the picture that would be exported, while somebody is asked.
@@ -76,6 +79,7 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
         overlay,
         probe,
         orbit,
+        turning,
         outline,
         shape,
         slices,
@@ -96,6 +100,7 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
         return (canvas, Ok(()));
     };
     let is_by_value = settings.labels.is_empty();
+    let is_one_view = !compare.shows_two_views();
     orbit::navigate(
         ui,
         &response,
@@ -107,12 +112,14 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
         (orbit, outline),
     );
     if response.double_clicked()
+        && is_one_view
         && let (Some(at), Some(dataset)) = (response.interact_pointer_pos(), viewport.dataset())
         && let Some(found) = light_probe::seen_at(dataset.volume(), settings, canvas.rect, at)
     {
         settings.camera.turn_about(found.point);
     }
     if slices.open
+        && is_one_view
         && response.clicked()
         && let (Some(at), Some(dataset)) = (response.interact_pointer_pos(), viewport.dataset())
         && let Some(found) = light_probe::seen_at(dataset.volume(), settings, canvas.rect, at)
@@ -123,20 +130,28 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
     let places = [(); 2].map(|()| ui.painter().add(Shape::Noop));
     let moving =
         ui.ctx().animate_bool_with_time(ui.scope_id().with("box"), response.dragged(), theme::FADE_S);
-    overlay.outline(ui, canvas.rect, &settings.camera, &scene, moving);
-    let view_projection = ViewProjection { camera: settings.camera.clone(), picture: canvas.rect };
-    slices.mark(&ui.painter_at(canvas.rect), &view_projection, &scene);
-    cut_handles.show(ui, canvas.rect, settings, &scene, handles.hidden);
-    handles.show(ui, canvas.rect, settings, scene.support_radius(), selected_light);
+    if is_one_view {
+        overlay.outline(ui, canvas.rect, &settings.camera, &scene, moving);
+        let view_projection = ViewProjection { camera: settings.camera.clone(), picture: canvas.rect };
+        slices.mark(&ui.painter_at(canvas.rect), &view_projection, &scene);
+    }
+    cut_handles.show(ui, canvas.rect, settings, &scene, handles.hidden || !is_one_view);
+    if is_one_view {
+        handles.show(ui, canvas.rect, settings, scene.support_radius(), selected_light);
+    } else {
+        handles.leave();
+    }
     // Two looks have words of their own at the top and at the bottom.
     let body = is_anatomical.then(|| compare.beside_words(ui, canvas.rect));
-    if let Some(view) = overlay.show(ui, canvas.rect, &settings.camera, (&scene, has_unknown_scale), body) {
+    if is_one_view
+        && let Some(view) = overlay.show(ui, canvas.rect, &settings.camera, (&scene, has_unknown_scale), body)
+    {
         commands.push(Command::LookFrom(view));
     }
     if overlay.on {
         light_chips::show(ui, canvas.rect, settings, selected_light, facts, commands);
     }
-    if let Some(dataset) = viewport.dataset().filter(|_| probe.on) {
+    if let Some(dataset) = viewport.dataset().filter(|_| probe.on && is_one_view) {
         let pointer = response.hover_pos().filter(|_| !response.dragged());
         let pointing = Pointing { pointer, clicked: response.clicked() && !response.double_clicked() };
         probe.show(ui, canvas.rect, settings, dataset.volume(), pointing);
@@ -151,7 +166,15 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
     let result = if canvas.size.contains(&0) || is_correcting {
         Ok(())
     } else {
-        viewport.advance(compare.looks(settings), canvas.size, ui.ctx())
+        let now_s = ui.input(|input| input.time);
+        let looks = match turning.shown(&settings.camera, now_s) {
+            Some(camera) => {
+                ui.ctx().request_repaint();
+                compare.looks(&Settings { camera, ..settings.clone() })
+            }
+            None => compare.looks(settings),
+        };
+        viewport.advance(looks, canvas.size, ui.ctx())
     };
     if let Some(shape) = shape {
         crop_frame::show(ui, canvas.rect, &settings.camera, shape);
@@ -180,6 +203,7 @@ impl App {
             overlay: self.overlay,
             probe: &mut self.probe,
             orbit: &mut self.orbit,
+            turning: &mut self.turning,
             outline: outline.as_deref(),
             shape: self.export.shape().filter(|_| !self.layout.picture_only),
             slices: &mut self.slices,

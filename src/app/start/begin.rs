@@ -28,6 +28,7 @@ use crate::app::viewport::light_handles::LightHandles;
 use crate::app::viewport::light_probe::LightProbe;
 use crate::app::viewport::orbit::Orbit;
 use crate::app::viewport::overlay::Overlay;
+use crate::app::viewport::turning::Turning;
 use crate::app::windows::chooser::Chooser;
 use crate::app::windows::contact_sheet::ContactSheet;
 use crate::app::windows::export::Export;
@@ -155,6 +156,7 @@ impl App {
             compare: Compare::default(),
             overlay: Overlay::default(),
             orbit: Orbit::default(),
+            turning: Turning::default(),
             probe: LightProbe::default(),
             palette: Palette::default(),
             light_slice: LightSlice::default(),

@@ -15,9 +15,9 @@ pub(crate) const REPLACE: Named =
     named("Replace with the present one", "Keep what is shown now in its place");
 pub(crate) const WITH_VIEW: Named = named("Go to it with its view", "Also look from where it was kept");
 pub(crate) const COMPARE: Named =
-    named("Compare with the picture", "Left of a divider the picture, right of it this look");
+    named("Compare with the picture", "Left of a divider the picture, right of it this view or look");
 pub(crate) const MARK: Named =
-    named("Mark to compare", "Two marked looks can be compared; Ctrl (⌘ on a Mac) and a click does the same");
+    named("Mark to compare", "Two that are marked are compared; Ctrl (⌘ on a Mac) and a click does the same");
 pub(crate) const REMOVE: Named = named("Remove", "It is kept no longer");
 pub(crate) const DIGIT: &str = "Key";
 pub(crate) const NO_ROOM: &str = "There is no room for it: at most 32 views and looks are kept, and a table of a thousand labels is too much for one";

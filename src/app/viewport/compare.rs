@@ -1,4 +1,5 @@
-//! Two looks in one picture: left and right of a divider, or what lies between them.
+//! Two looks in one picture: left and right of a divider, or what lies between them. Two views are beside each other,
+//! each with its middle in that of its part.
 
 use eframe::egui::{self, Align2, CursorIcon, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2};
 use eframe::egui::{WidgetInfo, pos2, vec2};
@@ -83,7 +84,16 @@ impl Compare {
             return [(rect, opaque(&other.difference)), nothing()];
         }
         let (left_part, right_part) = rect.split_left_right_at_fraction(self.divider);
-        [(left_part, opaque(left)), (right_part, opaque(&other.right))]
+        let parts = [(left_part, left), (right_part, &other.right)];
+        parts.map(|(part, picture)| {
+            let moved = if self.shows_two_views() { part.center().x - rect.center().x } else { 0.0 };
+            (part, paint_callback::moved_picture(rect, picture, moved / rect.width()))
+        })
+    }
+
+    /// Whether the two are seen from different places: then nothing in the window lies over both of them.
+    pub(crate) fn shows_two_views(&self) -> bool {
+        self.on && !self.difference && [&self.left, &self.right].iter().any(|side| is_view(side))
     }
 
     /// What the words of a comparison leave of the picture: its middle, without a row at the top and one at the bottom.
@@ -102,7 +112,7 @@ impl Compare {
             self.divide(ui, rect);
         }
         let called = |variant: &Variant, at: usize| match (variant, &self.names[at]) {
-            (Variant::Look(_), Some(name)) => name.clone(),
+            (Variant::Look(_) | Variant::View(_), Some(name)) => name.clone(),
             _ => text::compared::variant(variant).to_owned(),
         };
         let (left, right) = (&*called(&self.left, 0), &*called(&self.right, 1));
@@ -117,7 +127,7 @@ impl Compare {
             label(pos2(x - GRIP, top), Align2::RIGHT_TOP, left);
             label(pos2(x + GRIP, top), Align2::LEFT_TOP, right);
         }
-        if let Some(other) = &pictures.other {
+        if let Some(other) = pictures.other.as_ref().filter(|_| !self.shows_two_views()) {
             let Distance { rmse, largest } = other.distance;
             let words = text::picture::distance(rmse, largest);
             label(pos2(rect.center().x, rect.bottom() - MARGIN), Align2::CENTER_BOTTOM, &words);
@@ -149,6 +159,10 @@ impl Compare {
         }
         response.on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
     }
+}
+
+fn is_view(variant: &Variant) -> bool {
+    matches!(variant, Variant::View(_))
 }
 
 /// A few words on a dark background.

@@ -1,9 +1,13 @@
 //! Three hints over the first picture that somebody sees; gone for good with the first drag or a click on them.
 
-use eframe::egui::{self, Align2, Color32, Id, Rect, Response, Sense, Ui, WidgetInfo, vec2};
+use eframe::egui::{self, Id, Rect, Response, Sense, Ui, Vec2, WidgetInfo, vec2};
 
 use crate::app::common::theme;
 use crate::app::text;
+
+/// Points around them, and between two of them.
+const MARGIN: Vec2 = Vec2::new(14.0, 10.0);
+const GAP: f32 = 6.0;
 
 /// Whether they are shown.
 #[derive(Debug, Default)]
@@ -25,18 +29,21 @@ impl Hints {
         let mut painter = ui.painter_at(picture);
         painter.multiply_opacity(strength);
         let font = egui::TextStyle::Body.resolve(ui.style());
-        let width = 460.0_f32.min(picture.width() - 40.0);
-        let size = vec2(width, 24.0 * text::help::HINTS.len() as f32 + 16.0);
-        // In the corner that nothing else has: the object stands in the middle, the scale bar at the left.
+        let lay = |words: &str, ink| painter.layout_no_wrap(words.to_owned(), font.clone(), ink);
+        let rows = text::help::HINTS
+            .map(|(gesture, effect)| [lay(gesture, theme::ACCENT), lay(effect, theme::EYE_CURVE)]);
+        let row = rows[0][0].size().y;
+        let width = rows.iter().flatten().map(|galley| galley.size().x).fold(0.0, f32::max);
+        let size = vec2(width, (2.0 * row + GAP) * rows.len() as f32 - GAP) + 2.0 * MARGIN;
+        // In the corner that nothing else has, and no wider than need be: the object stands in the middle, the scale bar
+        // at the left.
         let area = Rect::from_min_size(picture.max - size - vec2(8.0, 8.0), size);
         painter.rect_filled(area, 8.0, theme::OUTLINE.gamma_multiply(0.78));
-        for (row, (gesture, effect)) in (0..).zip(text::help::HINTS) {
-            let left = area.left_top() + vec2(16.0, 20.0 + 24.0 * row as f32);
-            let write = |at, ink: Color32, words: &str| {
-                painter.text(at, Align2::LEFT_CENTER, words, font.clone(), ink)
-            };
-            let said = write(left, theme::ACCENT, gesture);
-            write(said.right_center() + vec2(10.0, 0.0), theme::EYE_CURVE, effect);
+        let mut at = area.min + MARGIN;
+        for [gesture, effect] in rows {
+            painter.galley(at, gesture, theme::ACCENT);
+            painter.galley(at + vec2(0.0, row), effect, theme::EYE_CURVE);
+            at.y += 2.0 * row + GAP;
         }
         let response = ui.interact(area, Id::unique("hints"), Sense::click());
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, text::help::CLOSE_HINTS));

@@ -16,6 +16,7 @@ pub(super) mod nothing_seen;
 pub(super) mod orbit;
 pub(super) mod overlay;
 pub(super) mod paint_callback;
+pub(super) mod turning;
 pub(super) mod view_projection;
 
 use std::sync::Arc;

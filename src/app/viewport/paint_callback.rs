@@ -8,15 +8,15 @@ use eframe::wgpu;
 use crate::gpu::{WindowPainter, WindowPicture};
 
 enum Drawing {
-    /// With an opacity.
-    Picture(WindowPicture, u8),
+    /// With an opacity, and moved to the right by so many pixels.
+    Picture(WindowPicture, u8, i16),
     Fill(WindowPainter, [u8; 3]),
 }
 
 impl CallbackTrait for Drawing {
     fn paint(&self, _: PaintCallbackInfo, pass: &mut wgpu::RenderPass<'static>, _: &CallbackResources) {
         match self {
-            Self::Picture(picture, opacity) => picture.draw(pass, *opacity),
+            Self::Picture(picture, opacity, moved) => picture.draw(pass, *opacity, *moved),
             Self::Fill(painter, color) => painter.fill(pass, *color),
         }
     }
@@ -24,11 +24,21 @@ impl CallbackTrait for Drawing {
 
 /// A picture, stretched over a rectangle.
 pub(in crate::app) fn picture(rect: Rect, picture: &WindowPicture, opacity: u8) -> Shape {
-    Shape::Callback(Callback::new_paint_callback(rect, Drawing::Picture(picture.clone(), opacity)))
+    drawing(rect, Drawing::Picture(picture.clone(), opacity, 0))
+}
+
+/// A picture, stretched over a rectangle and moved within it to the right by a share of its width.
+pub(in crate::app) fn moved_picture(rect: Rect, picture: &WindowPicture, share: f32) -> Shape {
+    let pixels = (share * picture.width() as f32).round() as i16;
+    drawing(rect, Drawing::Picture(picture.clone(), u8::MAX, pixels))
+}
+
+fn drawing(rect: Rect, drawing: Drawing) -> Shape {
+    Shape::Callback(Callback::new_paint_callback(rect, drawing))
 }
 
 /// A rectangle of one opaque colour.
 pub(in crate::app) fn fill(rect: Rect, painter: &WindowPainter, color: Color32) -> Shape {
     let [red, green, blue, _] = color.to_array();
-    Shape::Callback(Callback::new_paint_callback(rect, Drawing::Fill(painter.clone(), [red, green, blue])))
+    drawing(rect, Drawing::Fill(painter.clone(), [red, green, blue]))
 }

@@ -112,9 +112,15 @@ impl WindowPainter {
 }
 
 impl WindowPicture {
-    /// Draws it over the viewport of a pass with so many 255ths of opacity.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, opacity: u8) {
-        let number = u32::from(opacity);
+    /// How many pixels wide it is.
+    pub fn width(&self) -> u32 {
+        self.texture.width()
+    }
+
+    /// Draws it over the viewport of a pass with so many 255ths of opacity, moved to the right by so many of its own
+    /// pixels; what that leaves free shows the pixels of its edge.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, opacity: u8, moved: i16) {
+        let number = u32::from(opacity) | (u32::from(moved.wrapping_sub(i16::MIN) as u16) << 8);
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.bind_group, &[]);
         pass.draw(0..3, number..number + 1);

@@ -96,6 +96,13 @@ fn views_and_looks_are_kept_named_moved_and_compared() {
     harness.run_steps(4);
     wait_until_idle(&mut harness);
     assert!(harness.query_by_label("Difference").is_some() || harness.query_by_label("Divider").is_some());
+    // A view and a look as well, each with its middle in that of its part: nothing lies over both.
+    assert!(!harness.state().light_handle_positions().is_empty());
+    harness.get_by_label("Go to View 4").click_modifiers(Modifiers::COMMAND);
+    harness.run_steps(4);
+    wait_until_idle(&mut harness);
+    assert!(harness.state().light_handle_positions().is_empty());
+    harness.get_by_label("Go to View 4").click_modifiers(Modifiers::COMMAND);
     harness.key_press(Key::C);
     wait_until_idle(&mut harness);
     // The last one is dragged to the front, and that can be undone.

@@ -73,11 +73,30 @@ fn pictures_reach_the_window_byte_for_byte() {
     for format in [wgpu::TextureFormat::Rgba8Unorm, wgpu::TextureFormat::Rgba8UnormSrgb] {
         let painter = WindowPainter::new(&context.device, &context.queue, format).expect("a painter");
         let shown = painter.place(None, SIZE, &picture(), true);
-        assert!(drawn(&context, format, |pass| shown.draw(pass, 255)) == picture(), "{format:?}");
+        assert!(drawn(&context, format, |pass| shown.draw(pass, 255, 0)) == picture(), "{format:?}");
         // Another one in its place, and it alone.
         let black = vec![[0, 0, 0, 255]; (SIZE[0] * SIZE[1]) as usize].concat();
         let shown = painter.place(Some(shown), SIZE, &black, true);
-        assert!(drawn(&context, format, |pass| shown.draw(pass, 255)) == black, "{format:?}");
+        assert!(drawn(&context, format, |pass| shown.draw(pass, 255, 0)) == black, "{format:?}");
+    }
+}
+
+/// To either side; beyond its edge is the edge's colour.
+#[test]
+fn moved_pictures_are_moved_by_whole_pixels() {
+    let context = context();
+    let format = wgpu::TextureFormat::Rgba8Unorm;
+    let painter = WindowPainter::new(&context.device, &context.queue, format).expect("a painter");
+    let shown = painter.place(None, SIZE, &picture(), true);
+    let [width, height] = SIZE.map(|n| n as usize);
+    for moved in [-3_i16, 5] {
+        let found = drawn(&context, format, |pass| shown.draw(pass, 255, moved));
+        for (at, got) in found.chunks(4).enumerate() {
+            let (x, y) = (at % width, at / width);
+            let from = (x as isize - isize::from(moved)).clamp(0, width as isize - 1) as usize;
+            assert_eq!(got, &picture()[4 * (from + y * width)..][..4], "{moved}: {x}, {y}");
+        }
+        assert_eq!(found.len(), 4 * width * height);
     }
 }
 
@@ -93,7 +112,7 @@ fn a_fading_picture_lets_the_ground_through() {
     for opacity in [0_u8, 85, 255] {
         let both = drawn(&context, format, |pass| {
             painter.fill(pass, floor);
-            shown.draw(pass, opacity);
+            shown.draw(pass, opacity, 0);
         });
         let share = f64::from(opacity) / 255.0;
         for (got, on_top) in both.chunks(4).zip(picture().chunks(4)) {

@@ -39,5 +39,6 @@ pub(crate) fn variant(variant: &Variant) -> &'static str {
         Variant::Scatter => "Scattered",
         Variant::FirstTouch => "First touch",
         Variant::Look(_) => "Kept look",
+        Variant::View(_) => "Kept view",
     }
 }

@@ -54,6 +54,12 @@ impl LightHandles {
         &self.positions
     }
 
+    /// Shows none.
+    pub(crate) fn leave(&mut self) {
+        self.positions.clear();
+        self.takes_wheel = false;
+    }
+
     /// Shows the handles, lets the user drag them, and moves the lights.
     pub(crate) fn show(
         &mut self,
@@ -63,8 +69,7 @@ impl LightHandles {
         support_radius: f64,
         selected: &mut usize,
     ) {
-        self.positions.clear();
-        self.takes_wheel = false;
+        self.leave();
         if self.hidden {
             return;
         }

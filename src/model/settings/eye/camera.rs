@@ -70,6 +70,24 @@ impl Camera {
         self.up.scene_from_upright() * azimuth * elevation * looking_along_minus_x * roll
     }
 
+    /// The camera some share of the way to another, by the shorter way round; none if the two project differently or
+    /// stand otherwise.
+    pub fn towards(&self, other: &Self, share: f64) -> Option<Self> {
+        let is_alike = (self.projection, self.up, self.fit) == (other.projection, other.up, other.fit);
+        let mix = |from: f64, to: f64| from + (to - from) * share;
+        let turned = |from: f64, to: f64| mix(from, from + (to - from + 180.0).rem_euclid(360.0) - 180.0);
+        is_alike.then(|| Self {
+            azimuth_deg: turned(self.azimuth_deg, other.azimuth_deg),
+            elevation_deg: turned(self.elevation_deg, other.elevation_deg),
+            roll_deg: turned(self.roll_deg, other.roll_deg),
+            target: std::array::from_fn(|axis| mix(self.target[axis], other.target[axis])),
+            // Evenly as it is seen: so many times as near.
+            distance: self.distance * (other.distance / self.distance).powf(share),
+            fov_y_deg: mix(self.fov_y_deg, other.fov_y_deg),
+            ..self.clone()
+        })
+    }
+
     /// The eye in scene space.
     pub fn eye(&self) -> DVec3 {
         DVec3::from(self.target) + self.scene_from_view().z_axis * self.distance
@@ -160,6 +178,20 @@ impl Default for Camera {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn one_view_leads_to_another_by_the_shorter_way() {
+        let from = Camera { azimuth_deg: 170.0, distance: 2.0, ..Camera::default() };
+        let to = Camera { azimuth_deg: -170.0, distance: 8.0, target: [0.0, 0.0, 0.4], ..Camera::default() };
+        let half = from.towards(&to, 0.5).unwrap();
+        assert!((half.azimuth_deg - 180.0).abs() < 1e-9 && (half.distance - 4.0).abs() < 1e-9, "{half:?}");
+        assert!((half.target[2] - 0.2).abs() < 1e-9);
+        assert_eq!(from.towards(&to, 0.0), Some(from.clone()));
+        let end = from.towards(&to, 1.0).unwrap();
+        assert!((end.scene_from_view().z_axis - to.scene_from_view().z_axis).length() < 1e-9);
+        // Between lines of sight that meet and such that do not there is nothing.
+        assert_eq!(from.towards(&Camera { projection: Projection::Orthographic, ..to }, 0.5), None);
+    }
 
     #[test]
     fn axes_are_right_up_backward() {

@@ -1,0 +1,63 @@
+//! A short turn from view to view, so that the eye sees how the object comes to stand as it does. It is shown alone: the
+//! settings have the new view at once.
+
+use crate::model::Camera;
+
+/// Seconds that it takes: long enough to be followed, and too short to be waited for.
+const TURN_S: f64 = 0.15;
+
+/// A turn, while there is one.
+#[derive(Debug, Default)]
+pub(crate) struct Turning(Option<Turn>);
+
+#[derive(Debug)]
+struct Turn {
+    from: Camera,
+    to: Camera,
+    since_s: f64,
+}
+
+impl Turning {
+    /// Begins to turn from one view to another, or from where a turn is now.
+    pub(crate) fn begin(&mut self, from: &Camera, to: &Camera, now_s: f64) {
+        if from != to {
+            let from = self.shown(from, now_s).unwrap_or_else(|| from.clone());
+            self.0 = Some(Turn { from, to: to.clone(), since_s: now_s });
+        }
+    }
+
+    /// The view to be shown in the place of `camera`, while a turn leads there.
+    pub(crate) fn shown(&mut self, camera: &Camera, now_s: f64) -> Option<Camera> {
+        let shown = self.0.as_ref().filter(|turn| turn.to == *camera).and_then(|turn| {
+            let share = (now_s - turn.since_s) / TURN_S;
+            // Slowly at first and at last.
+            let eased = share * share * (3.0 - 2.0 * share);
+            if share < 1.0 { turn.from.towards(&turn.to, eased.max(0.0)) } else { None }
+        });
+        if shown.is_none() {
+            self.0 = None;
+        }
+        shown
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turn_begins_where_the_eye_is_and_ends_where_it_goes() {
+        let from = Camera::default();
+        let to = Camera { azimuth_deg: from.azimuth_deg + 90.0, ..from.clone() };
+        let mut turning = Turning::default();
+        turning.begin(&from, &to, 10.0);
+        assert_eq!(turning.shown(&to, 10.0), Some(from.clone()));
+        let half = turning.shown(&to, 10.0 + 0.5 * TURN_S).map(|camera| camera.azimuth_deg);
+        assert!((half.unwrap_or_default() - from.azimuth_deg - 45.0).abs() < 1e-6, "{half:?}");
+        assert_eq!(turning.shown(&to, 10.0 + TURN_S), None);
+        assert_eq!(turning.shown(&to, 10.0), None, "it has ended");
+        // Whoever takes the view in hand meanwhile has it.
+        turning.begin(&from, &to, 20.0);
+        assert_eq!(turning.shown(&from, 20.1), None);
+    }
+}
