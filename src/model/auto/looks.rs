@@ -6,7 +6,9 @@ use glam::DVec3;
 use super::threshold::otsu;
 use super::{LEAST_SHOWN, above, floor_color, frame, transfer};
 use crate::data::{Histogram, Volume};
-use crate::model::{Background, Camera, Easing, Light, Rig, Settings, TransferFunction};
+use crate::model::{
+    Background, Camera, Easing, Light, LightShape, Rig, Settings, Sky, SkyMode, TransferFunction,
+};
 
 /// A look to be tried.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,6 +41,12 @@ const FROM_ABOVE_DEG: f64 = 48.0;
 const BEHIND_DEG: f64 = 180.0;
 const LEFT_PROFILE_DEG: f64 = 120.0;
 
+/// What a sky gives beside lights where all of it is seen: hollows come out, and the lights still decide.
+const SOFT_SKY: f64 = 0.3;
+
+/// Degrees that a light is wide whose shadows have soft edges: half a metre seen from three and a half.
+const SOFT_DEG: f64 = 8.0;
+
 /// Fired clay, as modellers use it to judge form by light alone.
 const CLAY: [f32; 3] = [0.80, 0.76, 0.72];
 
@@ -52,7 +60,11 @@ pub fn looks(first: &Settings, volume: &Volume, histogram: &Histogram) -> Vec<Pr
     let mut all = vec![proposal("First look", "as the volume is opened", first.clone())];
     let lit = |rig: Rig| Settings { lights: rig.lights(&first.camera), ..first.clone() };
     all.push(proposal("Rim light", "lit from behind: outlines shine", lit(Rig::Rim)));
-    all.push(proposal("Relief", "one hard light from the side", lit(Rig::ThreeQuarter)));
+    all.push(proposal(
+        "Soft light",
+        "a sky all around: dark hollows, and shadows with soft edges",
+        soft(first),
+    ));
     all.push(proposal("Clay", "one neutral colour: form by light alone", clay(first)));
     let mut above = first.clone();
     above.camera.elevation_deg = FROM_ABOVE_DEG;
@@ -138,6 +150,16 @@ fn inner_start(function: &TransferFunction, volume: &Volume, histogram: &Histogr
     let first = (start * bins as f64) as usize;
     let inside = above.counts.iter().skip(first).sum::<u64>() as f64 / above.total.max(1) as f64;
     (is_ramp && INSIDE.contains(&inside)).then(|| volume.value_of(start))
+}
+
+/// A sky beside the lights, the first of which is as large as a window across a room.
+fn soft(first: &Settings) -> Settings {
+    let sky = Sky { mode: SkyMode::Gradient, intensity: SOFT_SKY, ..Sky::default() };
+    let mut soft = Settings { sky, ..first.clone() };
+    if let Some(key) = soft.lights.iter_mut().find(|light| light.on && light.casts_shadows) {
+        (key.shape, key.angle_deg) = (LightShape::Disc, SOFT_DEG);
+    }
+    soft
 }
 
 /// All in one colour, a little rough, between three lights.

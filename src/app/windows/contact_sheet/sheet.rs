@@ -231,6 +231,9 @@ fn at_hour(light: &Light, camera: &Camera, hour: u32) -> DVec3 {
     (view.x_axis * (sin * aside) + view.y_axis * (cos * aside) + view.z_axis * along) * distance
 }
 
+/// Directions of a sky, and points of a light, that do for a small picture.
+const FEW_DIRECTIONS: u32 = 16;
+
 /// Quick settings for a small picture.
 fn quick(settings: &Settings) -> Settings {
     let mut quick = settings.clone();
@@ -238,6 +241,8 @@ fn quick(settings: &Settings) -> Settings {
     (quick.shadows.kernel, quick.sampling.kernel) = (Kernel::Prefiltered, Kernel::Prefiltered);
     quick.sampling.slab = quick.sampling.slab.max(1.0);
     quick.sampling.slabs = Slabs::Even;
+    quick.sky.directions = quick.sky.directions.min(FEW_DIRECTIONS);
+    quick.shadows.area.samples = quick.shadows.area.samples.min(FEW_DIRECTIONS);
     quick
 }
 
