@@ -33,7 +33,7 @@ pub(crate) const PLACES: &[(Place, &str)] = &[
     (row(sections::SHADOWS, text::shadows::TRANSMISSION), text::found::GLASS),
     (row(sections::SHADOWS, text::shadows::NEAR_FIELD), text::found::CONTACT),
     (row(sections::SHADOWS, text::shadows::RESOLUTION), text::found::MEMORY),
-    (advanced(sections::SHADOWS, text::shadows::FIRST_TOUCH), ""),
+    (row(sections::SHADOWS, text::shadows::FIRST_TOUCH), ""),
     (advanced(sections::SHADOWS, text::shadows::PRECISION), text::found::MEMORY),
     (advanced(sections::SHADOWS, text::shadows::STORAGE), text::found::MEMORY),
     (advanced(sections::SHADOWS, text::shadows::AREA_SAMPLES), text::found::AREA_LIGHT),

@@ -61,6 +61,14 @@ pub(in crate::app) fn opens(ctx: &egui::Context, section: &str, is_advanced: boo
     true
 }
 
+/// Whether a section as a whole is being scrolled to.
+pub(in crate::app) fn is_led_to(ctx: &egui::Context, section: &str) -> bool {
+    shown(ctx).is_some_and(|shown| {
+        let Place { section: wanted, row, .. } = shown.place;
+        wanted == section && row.is_none() && now_s(ctx) - shown.since_s < SCROLL_S
+    })
+}
+
 /// Lets a row glow, if it is that which is shown.
 pub(in crate::app) fn glow(ui: &Ui, section: &str, row: &str, area: Rect) {
     let ctx = ui.ctx();

@@ -15,6 +15,9 @@ pub(crate) const VALUE_WIDTH: f32 = 62.0;
 /// Width of the button that puts a value back.
 pub(crate) const RESET_WIDTH: f32 = 16.0;
 
+/// Height of letters in points.
+pub(crate) const LETTERS: f32 = 13.0;
+
 /// Radius of a light's handle.
 pub(crate) const HANDLE_RADIUS: f32 = 8.0;
 /// How far from the border of the picture a handle stays.
@@ -135,8 +138,8 @@ pub(crate) fn apply(ctx: &egui::Context) {
     ctx.all_styles_mut(|style| {
         style.spacing.item_spacing = Vec2::new(6.0, 5.0);
         style.spacing.interact_size.y = 20.0;
-        style.text_styles.insert(TextStyle::Body, FontId::proportional(13.0));
-        style.text_styles.insert(TextStyle::Button, FontId::proportional(13.0));
+        style.text_styles.insert(TextStyle::Body, FontId::proportional(LETTERS));
+        style.text_styles.insert(TextStyle::Button, FontId::proportional(LETTERS));
         style.text_styles.insert(TextStyle::Small, FontId::proportional(11.0));
         style.visuals.slider_trailing_fill = true;
     });

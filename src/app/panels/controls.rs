@@ -47,9 +47,11 @@ impl Number {
         let Self { named, range, unit, log, decimals } = self;
         row(ui, named, |ui| {
             let spacing = ui.spacing().item_spacing.x;
-            let room = ui.available_width() - theme::VALUE_WIDTH - theme::RESET_WIDTH - 3.0 * spacing;
+            let typed = text_width(ui, &format!("{value:.decimals$}{unit}"));
+            let width = theme::VALUE_WIDTH.max(typed + 2.0 * ui.spacing().button_padding.x);
+            let room = ui.available_width() - width - theme::RESET_WIDTH - 3.0 * spacing;
             ui.spacing_mut().slider_width = room.max(30.0);
-            ui.spacing_mut().interact_size.x = theme::VALUE_WIDTH;
+            ui.spacing_mut().interact_size.x = width;
             let slider = Slider::new(value, range).suffix(unit).logarithmic(log).fixed_decimals(decimals);
             // Settings from files may lie beyond the slider: they stay until the user moves it.
             let slider = slider.clamping(egui::SliderClamping::Edits);
@@ -76,9 +78,18 @@ pub(super) fn row<R>(ui: &mut Ui, named: Named, add: impl FnOnce(&mut Ui) -> R) 
     shown.inner
 }
 
-/// A row whose control says by itself what it is.
+/// A row whose control says by itself what it is, in as many lines as it needs.
 pub(super) fn unlabelled<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
-    row(ui, Named { name: "", tip: "" }, add)
+    row(ui, Named { name: "", tip: "" }, |ui| {
+        ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Wrap);
+        add(ui)
+    })
+}
+
+/// Points that words of a control take side by side.
+fn text_width(ui: &Ui, words: &str) -> f32 {
+    let font = egui::TextStyle::Button.resolve(ui.style());
+    ui.painter().layout_no_wrap(words.to_owned(), font, ui.visuals().text_color()).size().x
 }
 
 /// The button that puts a value back; it is there only when there is something to put back.
@@ -139,13 +150,9 @@ pub(super) fn choice_with<T: PartialEq + Copy>(
         }
         let mut changed = false;
         // Long words take another row.
-        let font = egui::TextStyle::Button.resolve(ui.style());
-        let width_of = |name: &str| {
-            let color = ui.visuals().text_color();
-            ui.painter().layout_no_wrap(name.to_owned(), font.clone(), color).size().x
-        };
-        let padding = 2.0 * ui.spacing().button_padding.x + ui.spacing().item_spacing.x;
-        let needed: f32 = options.iter().map(|(_, named)| width_of(named.name) + padding).sum();
+        // And a point for rounding.
+        let padding = 2.0 * ui.spacing().button_padding.x + ui.spacing().item_spacing.x + 1.0;
+        let needed: f32 = options.iter().map(|(_, named)| text_width(ui, named.name) + padding).sum();
         let wraps = needed > ui.available_width();
         let layout = Layout::left_to_right(Align::Center).with_main_wrap(wraps);
         ui.with_layout(layout, |ui| {
@@ -249,7 +256,11 @@ pub(super) fn section(
     let id = shown.header_response.id.with("openness");
     let before = ui.data(|data| data.get_temp::<f32>(id)).unwrap_or(shown.openness);
     ui.data_mut(|data| data.insert_temp(id, shown.openness));
-    if shown.openness > before {
+    let is_led_to = reveal::is_led_to(ui.ctx(), title);
+    if is_led_to {
+        ui.ctx().request_repaint();
+    }
+    if shown.openness > before || is_led_to {
         let header = shown.header_response.rect;
         let whole = shown.body_response.map_or(header, |body| header.union(body.rect));
         let has_room = whole.height() <= ui.clip_rect().height();

@@ -1,4 +1,4 @@
-//! Section "Cut": the crop box and the clip plane.
+//! Section "Clipping": the crop box and the clip plane.
 
 use eframe::egui::{self, DragValue, Ui};
 use glam::DVec3;

@@ -97,15 +97,17 @@ fn body(ui: &mut Ui, light: &mut Light, camera: &Camera, commands: &mut Vec<Comm
         light.set_lock(lock, camera);
     }
     unlabelled(ui, |ui| {
-        let headlight = text::lights::HEADLIGHT;
-        if ui.button(headlight.name).on_hover_text(headlight.tip).clicked() {
-            light.lock = LightLock::Camera;
-            light.position = [0.0, 0.0, DVec3::from(light.position).length().max(2.0)];
-        }
-        let suggest = text::lights::SUGGEST;
-        if ui.button(suggest.name).on_hover_text(suggest.tip).clicked() {
-            commands.push(Command::SuggestLight);
-        }
+        ui.horizontal_wrapped(|ui| {
+            let headlight = text::lights::HEADLIGHT;
+            if ui.button(headlight.name).on_hover_text(headlight.tip).clicked() {
+                light.lock = LightLock::Camera;
+                light.position = [0.0, 0.0, DVec3::from(light.position).length().max(2.0)];
+            }
+            let suggest = text::lights::SUGGEST;
+            if ui.button(suggest.name).on_hover_text(suggest.tip).clicked() {
+                commands.push(Command::SuggestLight);
+            }
+        });
     });
     let density = Number::new(text::lights::DENSITY, 0.01..=4.0).unit(TIMES).log();
     density.show(ui, &mut light.density_scale, fresh.density_scale);

@@ -81,6 +81,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
         let default = panels.defaults.shadows.transmission;
         transmission.show(ui, &mut panels.settings.shadows.transmission, default);
         choice(ui, text::shadows::NEAR_FIELD, &mut panels.settings.shadows.near_field, &NEAR_FIELDS);
+        switch(ui, text::shadows::FIRST_TOUCH, &mut panels.settings.shadows.first_touch);
         let (before, cost) = (panels.settings.shadows.resolution, panels.facts.light_cost());
         let cost_of = |resolution: &Resolution| {
             let cost = cost?.finer(before.divisor() as f64 / resolution.divisor() as f64);
@@ -91,7 +92,6 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
         advanced(ui, "advanced shadows", |ui| {
             let combines = panels.settings.combines_lights();
             let shadows = &mut panels.settings.shadows;
-            switch(ui, text::shadows::FIRST_TOUCH, &mut shadows.first_touch);
             let default_slab = panels.defaults.shadows.slab;
             sampling::show(ui, &mut shadows.kernel, &mut shadows.slab, default_slab, &mut shadows.quadrature);
             choice(ui, text::shadows::REVERSE_KERNEL, &mut shadows.reverse_kernel, &REVERSE_KERNELS);

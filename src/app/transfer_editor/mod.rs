@@ -108,12 +108,18 @@ impl TransferEditor {
         // In the frame of the release, too, in which the last movement counts.
         let is_held = ui.input(|input| input.pointer.any_down() || input.pointer.any_released());
         let span = self.span.of(is_held, volume.ranges, volume.range);
-        let is_wide = ui.available_width() >= WIDE;
+        let letters = egui::TextStyle::Button.resolve(ui.style()).size / theme::LETTERS;
+        let is_wide = ui.available_width() >= WIDE * letters;
         let from_the_right = egui::Layout::right_to_left(egui::Align::Center);
         ui.horizontal(|ui| {
-            self.curve_tools(ui, settings, volume, span, is_wide);
+            let is_whole = self.curve_tools(ui, settings, volume, span);
             if is_wide {
-                ui.with_layout(from_the_right, |ui| self.plot_tools(ui, settings, commands));
+                ui.with_layout(from_the_right, |ui| {
+                    self.plot_tools(ui, settings, commands);
+                    if is_whole {
+                        self.hint(ui);
+                    }
+                });
             }
         });
         if !is_wide {
@@ -144,15 +150,14 @@ impl TransferEditor {
         plot::mark(ui, &axes, marked);
     }
 
-    /// What edits the curve. `span`: what the axis of values spans.
+    /// What edits the curve; whether that is the whole of it. `span`: what the axis of values spans.
     fn curve_tools(
         &mut self,
         ui: &mut Ui,
         settings: &mut Settings,
         volume: &VolumeFacts,
         span: ValueRange,
-        is_wide: bool,
-    ) {
+    ) -> bool {
         let before = self.curve;
         let eye = ui.selectable_value(&mut self.curve, Curve::Eye, text::transfer::EYE.name);
         eye.on_hover_text(text::transfer::EYE.tip);
@@ -176,10 +181,6 @@ impl TransferEditor {
             menus::shapes(ui, function, volume, self.zoom.shown(span));
             let draw = text::transfer::FREEHAND;
             ui.toggle_value(&mut self.freehand.on, draw.name).on_hover_text(draw.tip);
-            if is_wide {
-                let hint = if self.freehand.on { text::transfer::DRAW_HINT } else { text::transfer::HINT };
-                ui.add(egui::Label::new(egui::RichText::new(hint).weak()).truncate());
-            }
         } else if fields::points(
             ui,
             function,
@@ -189,6 +190,15 @@ impl TransferEditor {
         ) {
             self.selection.remove(function);
         }
+        selected.is_empty()
+    }
+
+    /// What can be done in the plot, as far as there is room to say so.
+    fn hint(&self, ui: &mut Ui) {
+        let hint = if self.freehand.on { text::transfer::DRAW_HINT } else { text::transfer::HINT };
+        ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+            ui.add(egui::Label::new(egui::RichText::new(hint).weak()).truncate());
+        });
     }
 
     /// The curve that is edited.

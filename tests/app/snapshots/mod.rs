@@ -3,6 +3,8 @@
 //! The pictures lie beside this file. With `UPDATE_SNAPSHOTS=1` in the environment they are written anew: look
 //! at each before it is committed. What was found lies beside it as `NAME.found.png` after a failure.
 
+mod sizes;
+
 use std::path::{Path, PathBuf};
 
 use chiaroscuro::app::App;

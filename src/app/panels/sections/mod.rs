@@ -1,5 +1,8 @@
 //! What of the side panel's sections is on, and what their reset buttons put back.
 
+mod icons;
+pub(super) mod tabs;
+
 use crate::app::text::sections::{
     CAMERA, COMPARE, CUTS, DATA, FLOOR, LABELS, LIGHTS, SHADING, SHADOWS, SOFT_LIGHT,
 };

@@ -66,7 +66,8 @@ pub(crate) const TURN: Named = named("Turn", "Turns the rectangle about the line
 pub(crate) const HOOD: Named =
     named("Spotlight", "The light shines only within a cone around the line to the middle of the volume");
 pub(crate) const CONE: Named = named("Cone", "From the middle of the cone to where no light is left");
-pub(crate) const RIM: Named = named("Rim", "How far inside that the light begins to fade; 0 is a hard edge");
+pub(crate) const RIM: Named =
+    named("Falloff", "How far inside that the light begins to fade; 0 is a hard edge");
 
 /// The chip that adds a light.
 pub(crate) const ADD_CHIP: Named = named("+", "Add a light");

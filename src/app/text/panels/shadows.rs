@@ -104,7 +104,7 @@ pub(crate) const FINE: Named = named("Fine", "Light volumes, and longer rays: fo
 pub(crate) const EXACT: Named = named("Exact", "Rays all the way and the thinnest slabs: true, and slow");
 
 pub(crate) const NEAR_FIELD: Named = named(
-    "Nearby",
+    "Contact shadows",
     "What shades a point from close by: found by a short ray, which shows relief, contact and thin things sharply",
 );
 pub(crate) const NEAR_OFF: Named =

@@ -1,0 +1,46 @@
+//! A row of drawings above the sections of the side panel: each leads to one, however far down that is.
+
+use eframe::egui::{Role, Sense, Ui, Vec2, WidgetInfo};
+
+use super::icons;
+use crate::app::common::reveal;
+use crate::app::common::theme;
+use crate::app::text;
+use crate::app::text::sections::ALL;
+
+/// Height of a drawing's button in points.
+const HEIGHT: f32 = 24.0;
+
+/// Shows one drawing for each section that `is_there`, with a dot where `is_active`.
+pub(in crate::app::panels) fn show(
+    ui: &mut Ui,
+    is_there: impl Fn(&str) -> bool,
+    is_active: impl Fn(&str) -> bool,
+) {
+    let titles: Vec<_> = ALL.into_iter().filter(|title| is_there(title)).collect();
+    let size = Vec2::new(ui.available_width() / titles.len() as f32, HEIGHT);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 0.0;
+        for title in titles {
+            let (area, response) = ui.allocate_exact_size(size, Sense::click());
+            response.widget_info(|| WidgetInfo::labeled(Role::Button, true, text::sections::go_to(title)));
+            let visuals = *ui.style().interact(&response);
+            if response.hovered() || response.has_focus() {
+                ui.painter().rect(
+                    area.shrink(1.0),
+                    visuals.corner_radius,
+                    visuals.weak_bg_fill,
+                    visuals.bg_stroke,
+                    eframe::egui::StrokeKind::Inside,
+                );
+            }
+            icons::paint(ui.painter(), title, area.center(), visuals.fg_stroke.color);
+            if is_active(title) {
+                ui.painter().circle_filled(area.right_top() + Vec2::new(-5.0, 5.0), 2.5, theme::ACCENT);
+            }
+            if response.on_hover_text(title).clicked() {
+                reveal::show_section(ui.ctx(), title, true);
+            }
+        }
+    });
+}

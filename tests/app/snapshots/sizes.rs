@@ -1,0 +1,125 @@
+//! The whole window but for its picture: at three sizes, with texts as long as they can be, and with wider letters, as of
+//! translations that are longer.
+
+use chiaroscuro::app::{App, Options};
+use chiaroscuro::model::{Kept, Settings, SkyMode};
+use eframe::egui::{Rect, Role, Vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use image::RgbaImage;
+
+use super::{THEMES, check, in_theme};
+use crate::harness::{SCENE, wait_until_idle, window_with};
+use crate::names::unfolded;
+
+/// How much longer translations of English are.
+const LONGER: f32 = 1.4;
+
+/// Points between what a panel holds and the window's edge, at least.
+const MARGIN: f32 = 3.0;
+
+/// Points at the bottom where the window says how fast this machine is.
+const STATUS: f32 = 26.0;
+
+fn window_of(change: fn(&mut Settings), size: Vec2) -> Harness<'static, App> {
+    let adjust = Box::new(move |mut settings: Settings| {
+        settings.shadows.keep_balanced = false;
+        change(&mut settings);
+        settings
+    });
+    window_with(Options { source: Some(SCENE.into()), adjust: Some(adjust), ..Options::default() }, size)
+}
+
+/// Names of some two hundred letters, wherever there are names.
+fn with_long_names(settings: &mut Settings) {
+    let name = "Überlänge ".repeat(20);
+    settings.lights.iter_mut().for_each(|light| light.name.clone_from(&name));
+    settings.sky.mode = SkyMode::Picture;
+    settings.sky.picture.name = "panorama_".repeat(22);
+    let camera = settings.camera.clone();
+    settings.kept = vec![Kept::view(name, &camera)];
+}
+
+fn enlarge_letters(harness: &mut Harness<'_, App>) {
+    harness.ctx.all_styles_mut(|style| {
+        style.text_styles.values_mut().for_each(|font| font.size *= LONGER);
+    });
+    harness.run_steps(6);
+    wait_until_idle(harness);
+}
+
+/// Only what lies around the picture.
+fn without_picture(mut window: RgbaImage, picture: Rect) -> RgbaImage {
+    let status = window.height() as f32 - STATUS;
+    for (x, y, pixel) in window.enumerate_pixels_mut() {
+        let at = eframe::egui::pos2(x as f32 + 0.5, y as f32 + 0.5);
+        if picture.contains(at) || at.y > status {
+            *pixel = image::Rgba([90, 90, 90, 255]);
+        }
+    }
+    window
+}
+
+fn check_window(harness: &mut Harness<'_, App>, name: &str, failures: &mut Vec<String>) {
+    for (theme, suffix) in THEMES {
+        let window = in_theme(harness, theme);
+        let (picture, _) = harness.state().viewport_rect().expect("a picture");
+        let whole = Rect::from_min_size(
+            eframe::egui::Pos2::ZERO,
+            Vec2::new(window.width() as f32, window.height() as f32),
+        );
+        check(&without_picture(window, picture), whole, &format!("{name}-{suffix}"), failures);
+    }
+}
+
+#[test]
+fn windows_of_three_sizes() {
+    let mut failures = Vec::new();
+    let mut harness = window_of(|_| {}, Vec2::new(640.0, 400.0));
+    for (name, size) in [("small", [640.0, 400.0]), ("middle", [1280.0, 800.0]), ("large", [1920.0, 1080.0])]
+    {
+        harness.set_size(size.into());
+        harness.run_steps(8);
+        wait_until_idle(&mut harness);
+        check_window(&mut harness, name, &mut failures);
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
+}
+
+/// Nothing in the side panel is cut off by letters as wide as those of longer languages.
+#[test]
+fn wide_letters_are_not_cut_off() {
+    let mut harness = unfolded(700.0);
+    enlarge_letters(&mut harness);
+    let mut beyond = Vec::new();
+    for role in [
+        Role::Button,
+        Role::CheckBox,
+        Role::RadioButton,
+        Role::ComboBox,
+        Role::Slider,
+        Role::SpinButton,
+        Role::TextInput,
+    ] {
+        let cut = harness.query_all_by_role(role).filter(|node| node.rect().right() > 700.0 - MARGIN);
+        beyond.extend(cut.map(|node| (node.accesskit_node().label(), node.rect())));
+    }
+    assert!(beyond.is_empty(), "{beyond:#?}");
+}
+
+/// And the picture has the width that it has with short ones.
+#[test]
+fn windows_with_long_names_and_wide_letters() {
+    let size = Vec2::new(1280.0, 800.0);
+    let mut failures = Vec::new();
+    let usual = window_of(|_| {}, size).state().viewport_rect().expect("a picture").0;
+    let mut harness = window_of(with_long_names, size);
+    check_window(&mut harness, "names", &mut failures);
+    let named = harness.state().viewport_rect().expect("a picture").0;
+    assert_eq!(named.x_range(), usual.x_range());
+    enlarge_letters(&mut harness);
+    check_window(&mut harness, "letters", &mut failures);
+    let enlarged = harness.state().viewport_rect().expect("a picture").0;
+    assert_eq!(enlarged.x_range(), usual.x_range());
+    assert!(failures.is_empty(), "{failures:#?}");
+}
