@@ -29,7 +29,8 @@ struct Light {
     points: u32,
     // … 1: a disc, 2: a rectangle, 3: a ball …
     shape: u32,
-    pad0: u32,
+    // … how many steps rays nearby take towards it …
+    near_steps: u32,
     // … and from its middle to its borders: to the right, up, and towards the volume. Around the place, or of a parallel
     // light around its direction.
     area_right: vec3f,

@@ -4,7 +4,7 @@
 #import "density/cut.wgsl"
 #import "shading/shade.wgsl"
 
-// Steps of the near field (src/model/settings/shadows.rs), or none.
+// Steps of the near field (src/model/settings/shadows.rs), or none. Towards lights that have a size they are fewer.
 override NEAR_STEPS: u32 = 0u;
 
 // Light as a ray finds it close by, and as its volume knows it from there on: a volume blurs what lies within a voxel
@@ -17,14 +17,14 @@ fn near_light(light: Light, volume: texture_3d<f32>, surface: Surface, towards: 
     var depth = Left(0.0);
     var step = 0u;
     loop {
-        let width = near_width(step) * eye.near_edge + select(0.0, light.near_ahead, step + 1u == NEAR_STEPS);
+        let width = near_width(step) * eye.near_edge + select(0.0, light.near_ahead, step + 1u == light.near_steps);
         let length = min(width, max(towards.distance - way, 0.0));
         let p = surface.point + forward * (way + 0.5 * length);
         let extinction = met_nearly(lighting_density(p, surface.level));
         depth += extinction * share_that_shades(eye.shading_cut, p) * lighting_presence(p, surface.level) * length;
         way += length;
         step += 1u;
-        if (step >= NEAR_STEPS) {
+        if (step >= light.near_steps) {
             break;
         }
     }

@@ -194,7 +194,7 @@ impl<'r> Shader<'r> {
                 .distance(scene.scene_from_index.transform_point3(sample.point)),
         };
         let at = |way: f64| sample.point + scene.index_from_scene.transform_vector3(to_light * way);
-        let steps = self.reference.settings.near_field().steps();
+        let steps = lamp.light.near_steps(self.reference.settings.near_field());
         let mut way = 0.0;
         let mut depth = 0.0;
         for step in 0..steps {

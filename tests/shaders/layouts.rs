@@ -78,7 +78,7 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
         near_ahead,
         points,
         shape,
-        pad0,
+        near_steps,
         area_right,
         pad1,
         area_up,

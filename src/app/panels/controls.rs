@@ -150,10 +150,10 @@ pub(super) fn choice_with<T: PartialEq + Copy>(
         }
         let mut changed = false;
         // Long words take another row.
-        // And a point for rounding.
-        let padding = 2.0 * ui.spacing().button_padding.x + ui.spacing().item_spacing.x + 1.0;
+        let padding = 2.0 * ui.spacing().button_padding.x + ui.spacing().item_spacing.x;
         let needed: f32 = options.iter().map(|(_, named)| text_width(ui, named.name) + padding).sum();
-        let wraps = needed > ui.available_width();
+        // Places are rounded to pixels.
+        let wraps = needed + 1.0 > ui.available_width();
         let layout = Layout::left_to_right(Align::Center).with_main_wrap(wraps);
         ui.with_layout(layout, |ui| {
             for (option, of_option) in options {

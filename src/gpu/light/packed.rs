@@ -53,7 +53,7 @@ pub(crate) fn pack_light(
         near_ahead: volume.map_or(0.0, |volume| 0.5 * volume.divisor as f64 * scene.smallest_edge()) as f32,
         points: light.area.map_or(1, |_| settings.shadows.area.samples),
         shape: light.area.map_or(0, |area| area.shape as u32),
-        pad0: 0,
+        near_steps: light.near_steps(settings.near_field()),
         area_right: border(|area| area.right),
         pad1: 0.0,
         area_up: border(|area| area.up),

@@ -124,9 +124,16 @@ impl NearField {
         }
     }
 
-    /// How long it is, in smallest edges of voxels, but for what the last step has more.
-    pub fn length_voxels(self) -> f64 {
-        (0..self.steps()).map(Self::width_voxels).sum()
+    /// How many of the steps lead no farther than that, in smallest edges of voxels; but two at least, for what lies within
+    /// a voxel no light volume knows.
+    pub fn steps_within(self, length_voxels: f64) -> u32 {
+        let within = |&steps: &u32| Self::length_voxels(steps) <= length_voxels;
+        (2..=self.steps()).rev().find(within).unwrap_or(2).min(self.steps())
+    }
+
+    /// How long so many steps are, in smallest edges of voxels, but for what the last has more.
+    pub fn length_voxels(steps: u32) -> f64 {
+        (0..steps).map(Self::width_voxels).sum()
     }
 
     /// Width of a step, in smallest edges of voxels, but for what the last has more.

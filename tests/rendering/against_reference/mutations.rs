@@ -197,7 +197,7 @@ sided_mutation!(
 sided_mutation!(
     light_looked_up_where_rays_end,
     "eye/gather.wgsl",
-    "select(0.0, light.near_ahead, step + 1u == NEAR_STEPS)",
+    "select(0.0, light.near_ahead, step + 1u == light.near_steps)",
     "0.0"
 );
 sided_mutation!(

@@ -1,11 +1,12 @@
 //! Pictures with everything on, lights that have a size, a sky and light that bounces, beside those of a path tracer that
 //! knows no light volumes, no sheets, no blocks, no fixed directions and no bounces to be counted.
 
-use chiaroscuro::data::{Samples, Volume};
+use chiaroscuro::data::load::{Choice, LoadControl, LoadOptions, Portion, Thinning};
+use chiaroscuro::data::{Samples, Volume, open};
 use chiaroscuro::gpu::{RenderOptions, Renderer};
 use chiaroscuro::model::{
     DensityRange, Light, LightKind, LightShape, Projection, Quality, Resolution, Scattering, SceneLight,
-    Settings, Sky, SkyMode, SkyRadiance,
+    Settings, Sky, SkyMode, SkyRadiance, Slabs, srgb_from_linear,
 };
 use chiaroscuro::plan::picture_frame;
 use glam::DVec3;
@@ -22,6 +23,9 @@ const SIZE: u32 = 64;
 
 /// Pixels along the edges of squares whose means are compared: chance counts for a quarter in them.
 const SQUARE: u32 = 4;
+
+/// Pixels of a picture's pixel in maps of errors.
+const ENLARGED: u32 = 4;
 
 /// Voxels along the edges of volumes.
 const N: usize = 24;
@@ -174,13 +178,32 @@ fn squares(light: &[[f64; 3]]) -> Vec<[f64; 3]> {
     (0..edge * edge).map(mean).collect()
 }
 
+/// A picture's light.
+fn rendered(renderer: &mut Renderer, loaded: &Dataset, settings: &Settings) -> Vec<[f64; 3]> {
+    let picture = renderer.render(loaded, settings, [SIZE; 2], &RenderOptions::default()).expect("a picture");
+    picture.light.iter().map(|&[r, g, b, _]| [r, g, b].map(f64::from)).collect()
+}
+
+/// Beside each other at the finest, at the defaults, as the path tracer has it, and by how much the first two are off it,
+/// four times as strong and around grey: a row of small pictures.
+fn row(fine: &[[f64; 3]], usual: &[[f64; 3]], truth: &[[f64; 3]]) -> image::RgbImage {
+    let differ = |found: &[[f64; 3]]| -> Vec<[f64; 3]> {
+        let apart = |(a, b): (&[f64; 3], &[f64; 3])| std::array::from_fn(|c| 0.2 + 4.0 * (a[c] - b[c]));
+        found.iter().zip(truth).map(apart).collect()
+    };
+    let tiles = [fine.to_vec(), usual.to_vec(), truth.to_vec(), differ(fine), differ(usual)];
+    image::RgbImage::from_fn(tiles.len() as u32 * SIZE * ENLARGED, SIZE * ENLARGED, |x, y| {
+        let [column, row] = [x / ENLARGED, y / ENLARGED];
+        let light = tiles[(column / SIZE) as usize][(column % SIZE + SIZE * row) as usize];
+        image::Rgb(light.map(|c| (255.0 * srgb_from_linear(c.clamp(0.0, 1.0)) + 0.5) as u8))
+    })
+}
+
 /// The root mean square of how a picture differs from the truth, over its mean: estimates by lot differ from it by chance,
 /// which two of them do independently, so that the product of both differences has none of it in the mean.
 fn off(renderer: &mut Renderer, loaded: &Dataset, settings: &Settings, [a, b]: &[Vec<[f64; 3]>; 2]) -> f64 {
-    let picture = renderer.render(loaded, settings, [SIZE; 2], &RenderOptions::default()).expect("a picture");
-    let light: Vec<_> = picture.light.iter().map(|&[r, g, b, _]| [r, g, b].map(f64::from)).collect();
     let (mut products, mut mean) = (0.0, 0.0);
-    let found = squares(&light);
+    let found = squares(&rendered(renderer, loaded, settings));
     for ((found, a), b) in found.iter().zip(a).zip(b) {
         for c in 0..3 {
             products += (found[c] - a[c]) * (found[c] - b[c]);
@@ -196,6 +219,8 @@ fn finest(settings: &Settings) -> Settings {
     let mut settings = settings.clone();
     // Rays from every sample to every point of a light are more turns of loops than software drivers take.
     Quality::Fine.apply(&mut settings);
+    // Within slabs of a voxel the colour of thin matter changes.
+    (settings.sampling.slabs, settings.sampling.slab) = (Slabs::Even, 0.25);
     settings.sky.resolution = Resolution::Full;
     settings.scattering.resolution = Resolution::Full;
     settings.scattering.bounces = 12;
@@ -218,8 +243,13 @@ fn clouds(seed: u64) -> Volume {
 fn check(name: &str, loaded: &Dataset, paths: u32) {
     let settings = look();
     let truth = traced(loaded, &settings, paths);
+    let mean: Vec<_> = truth.iter().map(|[a, b]| std::array::from_fn(|c| 0.5 * (a[c] + b[c]))).collect();
     let truth = [0, 1].map(|half| squares(&truth.iter().map(|pixel| pixel[half]).collect::<Vec<_>>()));
     let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let [ours, usual] =
+        [finest(&settings), settings.clone()].map(|look| rendered(&mut renderer, loaded, &look));
+    let map = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("all-light-{name}.png"));
+    row(&ours, &usual, &mean).save(&map).expect("written");
     let mut off = |settings: &Settings| off(&mut renderer, loaded, settings, &truth);
     let (fine, usual) = (off(&finest(&settings)), off(&settings));
     let mut without = finest(&settings);
@@ -252,4 +282,21 @@ fn all_light_is_that_of_a_path_tracer_in_other_volumes() {
     check("creature", &Dataset::new(scenes::creature(N, DVec3::ONE)), 3072);
     check("clouds 5", &Dataset::new(clouds(5)), 3072);
     check("clouds 8", &Dataset::new(clouds(8)), 3072);
+}
+
+/// A scan of a tooth with a quarter of its voxels along each axis, if there is one.
+#[test]
+#[ignore = "takes minutes"]
+fn all_light_is_that_of_a_path_tracer_in_a_scan() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/raw");
+    let path = folder.join("tooth_103x94x161_uint8.raw");
+    if !path.exists() {
+        println!("NOT RUN: there is no {}", path.display());
+        return;
+    }
+    let quarter = Portion { thinning: Thinning::Average(4), ..Portion::default() };
+    let choice = Choice { portion: Some(quarter), ..Choice::default() };
+    let options = LoadOptions { choice, ..LoadOptions::default() };
+    let volume = open(&path, &options, &LoadControl::new()).expect("a volume");
+    check("tooth", &Dataset::new(volume), 3072);
 }

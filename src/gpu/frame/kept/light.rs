@@ -64,7 +64,8 @@ fn lookups_ahead(volume: &GpuVolume, settings: &Settings, light: &SceneLight, di
     if near == NearField::Off {
         return CellsAhead::default();
     }
-    let way = (near.length_voxels() + 0.5 * divisor as f64) * volume.scene.smallest_edge();
+    let way = (NearField::length_voxels(light.near_steps(near)) + 0.5 * divisor as f64)
+        * volume.scene.smallest_edge();
     CellsAhead::towards(light, &volume.scene, way)
 }
 

@@ -21,7 +21,7 @@ pub struct Light {
     pub near_ahead: f32,
     pub points: u32,
     pub shape: u32,
-    pub pad0: u32,
+    pub near_steps: u32,
     pub area_right: [f32; 3],
     pub pad1: f32,
     pub area_up: [f32; 3],

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::{LightKind, SceneLight};
-use crate::model::{Resolution, Shadows};
+use crate::model::{NearField, Resolution, Shadows};
 
 /// The widest light, in scene units: as wide as most rooms around a volume.
 pub const MAX_LIGHT_SIZE: f64 = 20.0;
@@ -16,6 +16,10 @@ pub const MAX_LIGHT_ANGLE_DEG: f64 = 90.0;
 
 /// The most oblong rectangle, width by height.
 pub const MAX_LIGHT_ASPECT: f64 = 10.0;
+
+/// How far the ways to points of a light come apart from that to its middle where a ray nearby stands for all of them, in
+/// edges of the smallest voxel: half a disc is nearer than 0.7 of its radius.
+const NEAR_SPREAD: f64 = 0.7;
 
 /// The golden ratio less one: multiples of it, less their whole parts, fill 0 … 1 evenly however many they are.
 const GOLDEN_SHARE: f64 = 0.618_033_988_749_894_9;
@@ -141,6 +145,20 @@ impl SceneLight {
         (0..count).map(|index| self.moved(area.offset(area.shape.point(index, count)))).collect()
     }
 
+    /// How many steps a ray nearby takes towards this light. One ray stands for those to all points, so that it ends where
+    /// these have come [`NEAR_SPREAD`] voxels apart from it: from there on their mean, the light volume, is nearer to the
+    /// truth.
+    pub fn near_steps(&self, near: NearField) -> u32 {
+        let Some(area) = &self.area else { return near.steps() };
+        let away = match self.kind {
+            // Its extent is that of one at a distance of 1.
+            LightKind::Parallel => 1.0,
+            LightKind::Perspective => DVec3::from(self.position).length(),
+        };
+        let spread = (0.5 * (area.right.length_squared() + area.up.length_squared())).sqrt();
+        near.steps_within(NEAR_SPREAD * away / spread)
+    }
+
     /// The point light that far from the middle of this one.
     fn moved(&self, offset: DVec3) -> Self {
         let middle = match self.kind {
@@ -170,6 +188,24 @@ mod tests {
     fn points(light: &Light) -> Vec<DVec3> {
         let resolved = light.in_scene(&Camera::default());
         resolved.points(64).iter().map(|point| DVec3::from(point.position)).collect()
+    }
+
+    #[test]
+    fn rays_nearby_end_before_the_ways_to_points_come_apart() {
+        let steps = |light: &Light, near| light.in_scene(&Camera::default()).near_steps(near);
+        let far = |angle_deg| Light { kind: LightKind::Parallel, angle_deg, ..light(LightShape::Disc) };
+        for near in [NearField::Off, NearField::Short, NearField::Long] {
+            assert_eq!(steps(&far(0.0), near), near.steps(), "a point");
+            assert_eq!(steps(&far(5.0), near), near.steps(), "16 voxels");
+        }
+        // Three voxels, and 1.7, of which two steps have one.
+        assert_eq!(steps(&far(25.0), NearField::Long), 4);
+        assert_eq!(steps(&far(45.0), NearField::Short), 2);
+        assert_eq!(steps(&far(90.0), NearField::Long), 2);
+        assert_eq!(steps(&far(90.0), NearField::Off), 0);
+        // As wide from a distance of 4 as that of 25 degrees.
+        let lamp = Light { size: 8.0 * 12.5_f64.to_radians().tan(), ..light(LightShape::Ball) };
+        assert_eq!(steps(&lamp, NearField::Long), 4);
     }
 
     #[test]
