@@ -49,7 +49,7 @@ impl Number {
             let spacing = ui.spacing().item_spacing.x;
             let typed = text_width(ui, &format!("{value:.decimals$}{unit}"));
             let width = theme::VALUE_WIDTH.max(typed + 2.0 * ui.spacing().button_padding.x);
-            let room = ui.available_width() - width - theme::RESET_WIDTH - 3.0 * spacing;
+            let room = room(ui) - width - theme::RESET_WIDTH - 3.0 * spacing;
             ui.spacing_mut().slider_width = room.max(30.0);
             ui.spacing_mut().interact_size.x = width;
             let slider = Slider::new(value, range).suffix(unit).logarithmic(log).fixed_decimals(decimals);
@@ -84,6 +84,11 @@ pub(super) fn unlabelled<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
         ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Wrap);
         add(ui)
     })
+}
+
+/// Points that are left of a row: where something before it was wider than the panel, no more than can be seen.
+fn room(ui: &Ui) -> f32 {
+    ui.available_width().min(ui.clip_rect().right() - ui.cursor().left())
 }
 
 /// Points that words of a control take side by side.
@@ -152,8 +157,8 @@ pub(super) fn choice_with<T: PartialEq + Copy>(
         // Long words take another row.
         let padding = 2.0 * ui.spacing().button_padding.x + ui.spacing().item_spacing.x;
         let needed: f32 = options.iter().map(|(_, named)| text_width(ui, named.name) + padding).sum();
-        // Places are rounded to pixels.
-        let wraps = needed + 1.0 > ui.available_width();
+        // There is no space behind the last, and places are rounded to pixels.
+        let wraps = needed - ui.spacing().item_spacing.x + 1.0 > room(ui);
         let layout = Layout::left_to_right(Align::Center).with_main_wrap(wraps);
         ui.with_layout(layout, |ui| {
             for (option, of_option) in options {

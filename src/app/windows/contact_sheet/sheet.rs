@@ -194,7 +194,9 @@ fn looks(
         } else {
             worker.measure(whole, &on_small.dataset, &proposal.settings)?
         };
-        let picture = picture(worker, &on_small, &closer(&look.quick, subject))?;
+        let mut shown = closer(&look.quick, subject);
+        even_faces(&mut shown);
+        let picture = picture(worker, &on_small, &shown)?;
         let candidate = Candidate {
             name: text::contact_sheet::look(at + 1, proposal.name),
             tip: proposal.differs.to_owned(),
@@ -234,13 +236,17 @@ fn at_hour(light: &Light, camera: &Camera, hour: u32) -> DVec3 {
 /// Directions of a sky, and points of a light, that do for a small picture.
 const FEW_DIRECTIONS: u32 = 16;
 
+/// Slabs that leave no grain: small pictures have few pixels, and small volumes large voxels.
+fn even_faces(settings: &mut Settings) {
+    (settings.sampling.slabs, settings.sampling.slab) = (Slabs::ByNeed, 1.0);
+}
+
 /// Quick settings for a small picture.
 fn quick(settings: &Settings) -> Settings {
     let mut quick = settings.clone();
     quick.shadows.resolution = Resolution::Half;
     (quick.shadows.kernel, quick.sampling.kernel) = (Kernel::Prefiltered, Kernel::Prefiltered);
-    quick.sampling.slab = quick.sampling.slab.max(1.0);
-    quick.sampling.slabs = Slabs::Even;
+    even_faces(&mut quick);
     quick.sky.directions = quick.sky.directions.min(FEW_DIRECTIONS);
     quick.shadows.area.samples = quick.shadows.area.samples.min(FEW_DIRECTIONS);
     quick
