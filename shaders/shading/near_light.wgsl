@@ -17,14 +17,17 @@ fn near_light(light: Light, volume: texture_3d<f32>, surface: Surface, towards: 
     var depth = Left(0.0);
     var step = 0u;
     loop {
-        let width = near_width(step) * eye.near_edge + select(0.0, light.near_ahead, step + 1u == light.near_steps);
+        // Further steps are none: drivers unroll a loop whose end they know.
+        let is_taken = select(0.0, 1.0, step < light.near_steps);
+        let width =
+            is_taken * near_width(step) * eye.near_edge + select(0.0, light.near_ahead, step + 1u == light.near_steps);
         let length = min(width, max(towards.distance - way, 0.0));
         let p = surface.point + forward * (way + 0.5 * length);
         let extinction = met_nearly(lighting_density(p, surface.level));
         depth += extinction * share_that_shades(eye.shading_cut, p) * lighting_presence(p, surface.level) * length;
         way += length;
         step += 1u;
-        if (step >= light.near_steps) {
+        if (step >= NEAR_STEPS) {
             break;
         }
     }

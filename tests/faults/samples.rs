@@ -5,7 +5,7 @@ use std::path::Path;
 
 use chiaroscuro::data::load::{LoadControl, LoadOptions};
 use chiaroscuro::data::{ValueRange, ValueRanges, open};
-use chiaroscuro::export::{ExportError, Rows};
+use chiaroscuro::export::{Animation, AnimationSpec, ExportError, Rows};
 use chiaroscuro::export::{export_png, picture_size, read_picture, read_record, write_picture};
 use chiaroscuro::model::{
     Depth, EXPORTED, ImageSpec, PRESETS, Record, Settings, VolumeRecord, export, import,
@@ -45,6 +45,22 @@ fn session(path: &Path) -> bool {
 fn picture(path: &Path) -> bool {
     let has_look = look(read_record(path).ok().flatten());
     picture_size(path).is_ok() && read_picture(path).is_ok() && has_look
+}
+
+/// A GIF or a video, of which only the look is read.
+fn carried(path: &Path) -> bool {
+    look(read_record(path).ok().flatten())
+}
+
+/// A video with a record behind what players read.
+fn film(record: &str) -> Vec<u8> {
+    let part = |kind: &[u8; 4], parts: &[&[u8]]| {
+        let length = 8 + parts.iter().map(|part| part.len()).sum::<usize>();
+        [&(length as u32).to_be_bytes()[..], kind, &parts.concat()].concat()
+    };
+    let record = part(b"uuid", &[b"chiaroscuro.look", record.as_bytes()]);
+    [part(b"ftyp", &[b"isom\0\0\0\0"]), part(b"mdat", &[&[7; 40]]), part(b"moov", &[&[0; 12]]), record]
+        .concat()
 }
 
 fn transfer(path: &Path) -> bool {
@@ -147,6 +163,13 @@ pub(crate) fn samples(folder: &Path) -> Vec<Sample> {
     let shot = ImageSpec { depth: Depth::Linear, ..ImageSpec::new([3, 2]) };
     write_picture(&exr, &shot, Some(&record), &mut || Ok::<_, ExportError>(rows.take())).expect("a picture");
     add("picture.exr", std::fs::read(&exr).expect("it was just written"), picture);
+    let gif = folder.join("sample.gif");
+    let reel = AnimationSpec { size: [3, 2], frames: 1, rate: 10, transparent: false };
+    let mut moving = Animation::create(&gif, &reel).expect("a file");
+    moving.add(&[120; 24], &record).expect("a picture");
+    moving.finish().expect("a file");
+    add("moving.gif", std::fs::read(&gif).expect("it was just written"), carried);
+    add("moving.mp4", film(&record), carried);
 
     let with_preset =
         PRESETS[0].apply(&Settings::default(), &ValueRanges::same(range())).expect("a preset of ours");

@@ -1,6 +1,6 @@
 //! A slice in a file of its own: PNG, JPEG, BMP or TIFF.
 
-use std::io::{self, BufReader, Read as _};
+use std::io::{self, BufRead, BufReader, Read as _};
 
 use image::error::{ImageError, LimitErrorKind};
 use image::{ColorType, ImageDecoder as _, ImageFormat, ImageReader, Limits};
@@ -106,13 +106,42 @@ pub(super) fn look(
     Ok((header, bytes))
 }
 
+/// Bytes of a BMP up to the end of its compression's number.
+const BMP_HEADER: usize = 34;
+
+/// Most pixels that a file of some length can hold. Decoders make room for as many as its header says, and some fill what
+/// is missing with grey.
+fn most_pixels(format: ImageFormat, length: u64, first: &[u8]) -> u64 {
+    match format {
+        // A bit for each block of 8 x 8 pixels: the shortest code of its mean.
+        ImageFormat::Jpeg => length.saturating_mul(8 * 64),
+        ImageFormat::Bmp => most_of_bmp(length, first),
+        // Deflate makes 1032 of one byte (RFC 1951: 258 bytes of two bits), and up to eight pixels are in one of these.
+        _ => length.saturating_mul(1032 * 8),
+    }
+}
+
+/// The same of a BMP that begins so.
+fn most_of_bmp(length: u64, first: &[u8]) -> u64 {
+    let word = |at: usize| first.get(at..at + 2).map_or(0, |bytes| u16::from_le_bytes([bytes[0], bytes[1]]));
+    // The first headers, of twelve bytes, have neither runs nor their bits there.
+    let is_old = word(14) < 40;
+    match word(30) {
+        // Runs, of 255 pixels in two bytes at most.
+        1 | 2 if !is_old => length.saturating_mul(128),
+        _ => length.saturating_mul(8) / if is_old { 1 } else { u64::from(word(28)).max(1) },
+    }
+}
+
 fn look_at_image(
     attempt: Attempt<'_>,
     format: ImageFormat,
     options: &LoadOptions,
     is_decoded: bool,
 ) -> Result<(Header, Vec<u8>), LoadError> {
-    let input = Input::open(attempt)?;
+    let mut input = Input::open(attempt)?;
+    let first_bytes = input.reader.fill_buf().map_err(|error| attempt.io(error))?;
+    let first_bytes = first_bytes[..first_bytes.len().min(BMP_HEADER)].to_vec();
     let budget = options.memory_budget_bytes;
     let too_large = |bytes: u64| {
         attempt.limit(
@@ -141,6 +170,7 @@ fn look_at_image(
         }
         error => attempt.bad_input("data", plain(&format!("the picture is broken: {error}"), 200), HELP),
     };
+    let (length, most_pixels) = (input.len, most_pixels(format, input.len, &first_bytes));
     let mut reader: ImageReader<BufReader<_>> = ImageReader::with_format(input.reader, format);
     let mut limits = Limits::no_limits();
     limits.max_alloc = Some(budget);
@@ -167,6 +197,11 @@ fn look_at_image(
     let total = decoder.total_bytes();
     if total > budget {
         return Err(too_large(total));
+    }
+    if u64::from(width).saturating_mul(height.into()) > most_pixels {
+        let found =
+            format!("the picture is truncated: {width} x {height} pixels do not fit in {} bytes", length);
+        return Err(attempt.bad_input("data", found, HELP));
     }
     let mut bytes = Vec::new();
     if is_decoded {
