@@ -36,15 +36,15 @@ impl Pen<'_> {
         self.painter.add(Shape::convex_polygon(points, fill, self.stroke()));
     }
 
-    /// Part of a circle, as a line.
-    fn arc(&self, [x, y]: [f32; 2], radius: f32, from: f32, to: f32) -> Vec<[f32; 2]> {
-        let step = |at: usize| from + (to - from) * at as f32 / 16.0;
-        (0..=16).map(|at| [x + radius * step(at).cos(), y + radius * step(at).sin()]).collect()
-    }
-
     fn circle(&self, x: f32, y: f32, radius: f32, fill: Color32) {
         self.painter.circle(self.at(x, y), radius * REACH, fill, self.stroke());
     }
+}
+
+/// Part of a circle, as a line.
+fn arc([x, y]: [f32; 2], radius: f32, from: f32, to: f32) -> Vec<[f32; 2]> {
+    let step = |at: usize| from + (to - from) * at as f32 / 16.0;
+    (0..=16).map(|at| [x + radius * step(at).cos(), y + radius * step(at).sin()]).collect()
 }
 
 /// Draws what stands for a section.
@@ -65,11 +65,11 @@ pub(super) fn paint(painter: &Painter, title: &str, middle: Pos2, ink: Color32) 
         }
         SHADOWS => {
             pen.circle(0.0, 0.0, 0.85, empty);
-            pen.closed(&pen.arc([0.0, 0.0], 0.85, -0.5 * PI, 0.5 * PI), ink);
+            pen.closed(&arc([0.0, 0.0], 0.85, -0.5 * PI, 0.5 * PI), ink);
         }
         SOFT_LIGHT => {
-            pen.closed(&pen.arc([0.0, 0.6], 0.95, PI, TAU), half);
-            pen.line(&pen.arc([0.0, 0.6], 0.45, PI, TAU));
+            pen.closed(&arc([0.0, 0.6], 0.95, PI, TAU), half);
+            pen.line(&arc([0.0, 0.6], 0.45, PI, TAU));
         }
         SHADING => {
             pen.circle(0.0, 0.0, 0.85, half);

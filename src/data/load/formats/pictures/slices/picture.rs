@@ -1,6 +1,6 @@
 //! A slice in a file of its own: PNG, JPEG, BMP or TIFF.
 
-use std::io::{self, BufRead, BufReader, Read as _};
+use std::io::{self, BufRead as _, BufReader, Read as _};
 
 use image::error::{ImageError, LimitErrorKind};
 use image::{ColorType, ImageDecoder as _, ImageFormat, ImageReader, Limits};
@@ -200,7 +200,7 @@ fn look_at_image(
     }
     if u64::from(width).saturating_mul(height.into()) > most_pixels {
         let found =
-            format!("the picture is truncated: {width} x {height} pixels do not fit in {} bytes", length);
+            format!("the picture is truncated: {width} x {height} pixels do not fit in {length} bytes");
         return Err(attempt.bad_input("data", found, HELP));
     }
     let mut bytes = Vec::new();
