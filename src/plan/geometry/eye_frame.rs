@@ -23,7 +23,7 @@ const PREVIEW_SHARE: f64 = 0.7;
 
 /// Thickness of slabs for a preview, in edges of the smallest voxel, where pictures have `slab`.
 ///
-/// It is [`PREVIEW_SHARE`] of what the preview's pixels are wide where they are narrowest: it can show no finer shapes
+/// It is 0.7 of what the preview's pixels are wide where they are narrowest: it can show no finer shapes
 /// along its rays than across them. `size`: pixels of the preview.
 pub fn preview_slab(camera: &Camera, scene: &SceneSpace, size: [u32; 2], slab: f64) -> f64 {
     let frame = eye_frame(camera, scene, size, slab);

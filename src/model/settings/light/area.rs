@@ -146,7 +146,7 @@ impl SceneLight {
     }
 
     /// How many steps a ray nearby takes towards this light. One ray stands for those to all points, so that it ends where
-    /// these have come [`NEAR_SPREAD`] voxels apart from it: from there on their mean, the light volume, is nearer to the
+    /// these have come 0.7 voxels apart from it: from there on their mean, the light volume, is nearer to the
     /// truth.
     pub fn near_steps(&self, near: NearField) -> u32 {
         let Some(area) = &self.area else { return near.steps() };
