@@ -71,6 +71,22 @@ fn sections_open_where_something_is_switched_on_or_sought() {
     wait_until_idle(&mut harness);
 }
 
+/// The drawings above the sections open them and bring them into sight, those that are open already, too.
+#[test]
+fn drawings_lead_to_sections() {
+    let mut harness = window(|_| {});
+    harness.set_size(Vec2::new(760.0, 600.0));
+    harness.run_steps(4);
+    assert!(harness.query_by_label("Corrections").is_none(), "the section of the data is folded");
+    for (section, row) in [("Data", "Corrections"), ("Lights", "Add light")] {
+        harness.get_by_label(&format!("Go to {section}")).click();
+        harness.run_steps(12);
+        let row = harness.get_by_label(row).rect();
+        assert!(row.top() > 0.0 && row.bottom() < 600.0, "{section}: {row:?}");
+    }
+    wait_until_idle(&mut harness);
+}
+
 /// Steps back and forward say what they change.
 #[test]
 fn steps_of_the_history_have_names() {
