@@ -7,6 +7,7 @@ use chiaroscuro::cli::{self, CliError, ViewerRequest};
 use chiaroscuro::data::without_controls;
 
 fn main() -> ExitCode {
+    name_runtime_folder();
     let quiet = env_logger::Env::default().default_filter_or("warn,wgpu_hal=error,naga=error,rfd=off");
     // Drivers and files have their words in it.
     env_logger::Builder::from_env(quiet)
@@ -17,6 +18,27 @@ fn main() -> ExitCode {
         .init();
     ExitCode::from(cli::main(open_window))
 }
+
+/// Says where the session's own folder would be, if the environment does not: in containers, on clusters and after `su`.
+/// Graphics drivers look for a desktop there whether a window is wanted or not, and without it print lines that begin with
+/// *error* into good runs. A folder that is not there only has nothing in it.
+#[cfg(target_os = "linux")]
+#[expect(unsafe_code, reason = "the environment is changed before anything else runs")]
+fn name_runtime_folder() {
+    use std::os::unix::fs::MetadataExt as _;
+
+    const NAME: &str = "XDG_RUNTIME_DIR";
+    if std::env::var_os(NAME).is_some_and(|folder| std::path::Path::new(&folder).is_absolute()) {
+        return;
+    }
+    // Every process of a user's belongs to that user.
+    let Ok(process) = std::fs::metadata("/proc/self") else { return };
+    // SAFETY: `main` begins with it, when no other thread is there that could read the environment.
+    unsafe { std::env::set_var(NAME, format!("/run/user/{}", process.uid())) };
+}
+
+#[cfg(not(target_os = "linux"))]
+fn name_runtime_folder() {}
 
 #[cfg(feature = "window")]
 fn open_window(request: ViewerRequest) -> Result<(), CliError> {

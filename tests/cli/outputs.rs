@@ -179,3 +179,16 @@ fn refused_memory_and_lost_shaders_are_said() {
     folder.fail("render v_8x8x8_uint8.raw -o p.png --fault read-error@1", 6);
     folder.succeed(&format!("{RENDER} -o p.png --fault slow:1"));
 }
+
+/// Drivers look for a desktop, in a folder that containers and clusters do not name.
+#[cfg(target_os = "linux")]
+#[test]
+fn good_runs_print_no_errors() {
+    let folder = Folder::new();
+    // As good as not there: only absolute paths count.
+    for named in ["", "run"] {
+        let outcome = folder.run_with(&format!("{RENDER} -o p.png --force"), &[("XDG_RUNTIME_DIR", named)]);
+        assert_eq!(outcome.code, Some(0), "{outcome:?}");
+        assert!(!outcome.stderr.lines().any(|line| line.starts_with("error")), "{outcome:?}");
+    }
+}

@@ -19,11 +19,21 @@ const BEST: [&str; 4] = ["-c:v", "libx264", "-crf", "16"];
 /// With whatever else encodes MP4.
 const NEXT_BEST: [&str; 2] = ["-q:v", "2"];
 
-/// Edges are even, as players want them, and colours those of high-definition television.
-const FILTER: &str = "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p";
+/// Colours are those of high-definition television.
+const COLOURS: &str = "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p";
 
 /// Most bytes of its words that are read.
 const MOST_WORDS: u64 = 1 << 16;
+
+/// What becomes of the pictures: players want even edges, so that odd ones are continued by a pixel.
+fn filter([width, height]: [u32; 2]) -> String {
+    let (right, bottom) = (width % 2, height % 2);
+    if (right, bottom) == (0, 0) {
+        return COLOURS.to_owned();
+    }
+    let wider = format!("pad={}:{}", width + right, height + bottom);
+    format!("{wider},fillborders=right={right}:bottom={bottom}:mode=smear,{COLOURS}")
+}
 
 /// A running ffmpeg, which ends with whatever wanted its video.
 struct Ffmpeg {
@@ -86,7 +96,16 @@ impl Mp4 {
         let mut child = Command::new(program)
             .args(["-v", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"])
             .args(["-s", &format!("{width}x{height}"), "-r", &reel.rate.to_string(), "-i", "-", "-an"])
-            .args(["-vf", FILTER, "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"])
+            .args([
+                "-vf",
+                &filter(reel.size),
+                "-colorspace",
+                "bt709",
+                "-color_primaries",
+                "bt709",
+                "-color_trc",
+                "bt709",
+            ])
             .args(if has_x264 { &BEST[..] } else { &NEXT_BEST[..] })
             // The head comes first, so that players begin before they have it all.
             .args([
@@ -184,6 +203,12 @@ mod tests {
         for expected in [["-s", "3x2"], ["-r", "24"], ["-c:v", "libx264"]] {
             assert!(said.windows(2).any(|pair| pair == expected), "{expected:?} in {said:?}");
         }
+    }
+
+    #[test]
+    fn odd_edges_are_continued() {
+        assert_eq!(filter([640, 480]), COLOURS);
+        assert!(filter([321, 240]).starts_with("pad=322:240,fillborders=right=1:bottom=0:mode=smear,"));
     }
 
     #[test]

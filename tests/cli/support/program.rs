@@ -105,6 +105,7 @@ impl Folder {
     pub(crate) fn succeed(&self, args: &str) -> String {
         let outcome = self.run(args);
         assert_eq!(outcome.code, Some(0), "`{args}`: {outcome:?}");
+        assert!(outcome.message().is_none(), "`{args}` is a good run: {outcome:?}");
         outcome.stdout
     }
 
