@@ -107,9 +107,9 @@ fn left_on_map(slot: u32, at: vec3f) -> f32 {
 
 fn fallen(slot: u32, light: Light, p: vec3f, place: vec3f) -> Fallen {
     let shadowed = slot < SHADOWED;
-    let towards = to_light(light, place);
-    let hood = hood_share(light, towards.direction);
-    let bare = light.color * max(dot(floor_disc.up, towards.direction), 0.0);
+    let risen = risen_above(light, to_light(light, place), floor_disc.up, 1.0);
+    let hood = hood_share(light, risen.towards.direction) * risen.share;
+    let bare = light.color * max(risen.facing, 0.0);
     let s = floor_disc.shading;
     var left = Left(0.0);
     if (shadowed) {
@@ -129,7 +129,8 @@ fn fallen(slot: u32, light: Light, p: vec3f, place: vec3f) -> Fallen {
             left = Left(left_on_map(slot, place_on_map(place)));
         }
     }
-    return Fallen(bare * select(Left(hood), received(s, left), shadowed), bare * hood);
+    let arriving = received(s, left) - (1.0 - s.strength) * (1.0 - risen.share);
+    return Fallen(bare * select(Left(hood), arriving, shadowed), bare * hood);
 }
 
 // What an open floor sees of the sky: moments over a hemisphere.

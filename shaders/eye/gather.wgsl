@@ -41,7 +41,7 @@ fn light_distance(cell: vec3f) -> i32 {
 
 fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> Left {
 #if DIRECT
-    let p = biased(light, surface, towards);
+    let p = biased(surface, towards);
     let s = eye.shading;
     let cut = eye.shading_cut;
     var sum = Left(0.0);

@@ -19,10 +19,6 @@ struct Light {
     // From the light to what it shines at; a unit vector.
     hood_axis: vec3f,
     hood_outer: f32,
-    // The place in index space: a direction, as long as it is there, or a position.
-    place_in_index: vec3f,
-    // 1: surfaces take its diffuse light from both sides.
-    two_sided: f32,
     // By how much the last step of rays nearby is longer: half a voxel of its volume, in scene units.
     near_ahead: f32,
     // Of a light that has a size (src/model/settings/light/area.rs): point lights that stand for it, or 1 …
@@ -34,11 +30,12 @@ struct Light {
     // … and from its middle to its borders: to the right, up, and towards the volume. Around the place, or of a parallel
     // light around its direction.
     area_right: vec3f,
-    pad1: f32,
+    // 1: surfaces take its diffuse light from both sides.
+    two_sided: f32,
     area_up: vec3f,
-    pad2: f32,
+    pad0: f32,
     area_near: vec3f,
-    pad3: f32,
+    pad1: f32,
 }
 
 // The golden ratio less one.
@@ -92,6 +89,56 @@ fn to_light(light: Light, position: vec3f) -> Towards {
     let distance = length(away);
     let per_length = 1.0 / max(distance, 1e-9);
     return Towards(away * per_length, select(1e6, distance, light.perspective > 0.5), per_length);
+}
+
+// The square of the sine of half the width of a light as it is seen from somewhere; 0 of a point.
+fn width_seen(light: Light, towards: Towards) -> f32 {
+    let mean_square = 0.5 * (dot(light.area_right, light.area_right) + dot(light.area_up, light.area_up));
+    let tangent = mean_square * towards.per_length * towards.per_length;
+    return tangent / (1.0 + tangent);
+}
+
+// Of a disc of radius 1 whose middle stands at a height above the horizon, from −1 to 1: the share that has risen, and how
+// high the middle of that stands.
+fn risen_disc(height: f32) -> vec2f {
+    // Just below, f32 has too few digits for what is left; the middle of a thin segment stands at 2/5 of its height.
+    let u = clamp(height, -0.98, 1.0);
+    let quarter = 1.5707963 + asin(u);
+    let root = sqrt(1.0 - u * u);
+    let share = quarter + u * root;
+    let moment = u * quarter + root * (2.0 + u * u) / 3.0;
+    let low = max(1.0 + height, 0.0);
+    let share_of_all = select(share / 3.1415927, 0.0, height <= -1.0);
+    return vec2f(share_of_all, select(moment / share, 0.4 * low, height < -0.98));
+}
+
+// A light as a plane sees it.
+struct Risen {
+    // Towards the middle of what stands above the plane's horizon.
+    towards: Towards,
+    // Cosine between the plane's normal and the direction to the light's own middle …
+    middle: f32,
+    // … and the mean of those to all that stands above.
+    facing: f32,
+    // The share of the light that does. Light that comes past the plane is no more than that.
+    share: f32,
+}
+
+// `weight`: how much of a surface the plane is, which turns the direction.
+fn risen_above(light: Light, towards: Towards, normal: vec3f, weight: f32) -> Risen {
+    let half_width = sqrt(width_seen(light, towards));
+    let facing = dot(normal, towards.direction);
+    // One point that stands for all is risen or not.
+    if (light.points == 1u || half_width <= max(facing, 0.0)) {
+        return Risen(towards, facing, facing, 1.0);
+    }
+    let height = facing / half_width;
+    let disc = risen_disc(height);
+    // Where nothing has risen there is nothing to turn to; it turns back by and by.
+    let up = select(disc.y - height, max(2.0 + height, 0.0), height < -1.0) * half_width * weight;
+    let direction = normalize(towards.direction + normal * up);
+    let turned = Towards(direction, towards.distance, towards.per_length);
+    return Risen(turned, facing, disc.y * half_width, disc.x);
 }
 
 // What a hood leaves of the light in a direction: 3t² − 2t³ across the rim.
@@ -173,39 +220,38 @@ fn scattered_share(shading: Shading, surface: Surface, to_light: vec3f) -> f32 {
 #endif
 }
 
-// The share of a light that diffuse reflection gives back, and what is given back where there is no surface.
-fn diffuse_share(light: Light, surface: Surface, facing: f32, amid: f32) -> f32 {
-    var reflected = abs(facing);
+// What of a light diffuse reflection gives back of which a share arrives, without what has not risen, of which `unmissed`
+// counts as if it had; and `amid` of it where there is no surface.
+fn diffuse_share(light: Light, surface: Surface, risen: Risen, share: Left, unmissed: f32, amid: f32) -> Left {
+    var reflected = share * abs(risen.middle);
     if (ONE_SIDED) {
-        let outward = mix(max(-facing, 0.0), max(facing, 0.0), 0.5 + 0.5 * surface.side);
+        let outer = 0.5 + 0.5 * abs(surface.side);
+        let arriving = share - unmissed * (1.0 - risen.share);
+        let outward = arriving * (outer * max(risen.facing, 0.0)) + share * ((1.0 - outer) * max(-risen.middle, 0.0));
         reflected = mix(outward, reflected, light.two_sided);
     }
-    return mix(amid, reflected, surface.surfaceness);
+    return mix(share * amid, reflected, surface.surfaceness);
 }
 
-// The square of the sine of half the width of a light as it is seen from somewhere; 0 of a point.
-fn width_seen(light: Light, towards: Towards) -> f32 {
-    let mean_square = 0.5 * (dot(light.area_right, light.area_right) + dot(light.area_up, light.area_up));
-    let tangent = mean_square * towards.per_length * towards.per_length;
-    return tangent / (1.0 + tangent);
-}
-
-// What one light adds of which a given share arrives, and of which highlights show the width.
+// What one light adds of which a given share arrives, and of which highlights show the width. `unmissed`: what counts of
+// that share that has not risen.
 //
 // A highlight (N·H)^n is about a Gaussian of variance 1/n; light from an even disc of radius s moves H by half of what it
 // moves itself, which adds s²/16 to that, and the highlight is weaker as it is wider.
-fn reflect_light(shading: Shading, light: Light, surface: Surface, to_light: vec3f, share: Left, width: f32) -> Lit {
-    let arriving = light.color * share;
+fn reflect_light(shading: Shading, light: Light, surface: Surface, risen: Risen, share: Left, unmissed: f32) -> Lit {
+    let to_light = risen.towards.direction;
     // Highlights have one side: that to which density falls, or opacity.
     let turned = select(1.0, -1.0, ONE_SIDED && surface.side < 0.0);
     let clear = select(1.0, abs(surface.side), ONE_SIDED);
-    let facing = dot(surface.normal, to_light);
-    let diffuse = diffuse_share(light, surface, facing, scattered_share(shading, surface, to_light));
+    let amid = scattered_share(shading, surface, to_light);
+    let diffuse = light.color * diffuse_share(light, surface, risen, share, unmissed, amid);
     let half_vector = to_light + surface.to_eye;
     // pow(0, x) is spared: some drivers make it NaN.
     let aligned = max(turned * dot(surface.normal, half_vector) / max(length(half_vector), 1e-6), 1e-6);
+    let width = width_seen(light, risen.towards);
     let wider = 1.0 / (1.0 + shading.shininess * width / 16.0);
     let mirrored = pow(aligned, shading.shininess * wider) * wider;
-    let highlight = select(0.0, mirrored, turned * facing > 0.0) * surface.surfaceness * clear;
-    return Lit(arriving * diffuse, arriving * highlight);
+    let is_before = turned * dot(surface.normal, to_light) > 0.0;
+    let highlight = select(0.0, mirrored, is_before) * surface.surfaceness * clear;
+    return Lit(diffuse, light.color * share * highlight);
 }

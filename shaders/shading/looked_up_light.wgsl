@@ -2,5 +2,5 @@
 #import "shading/shade.wgsl"
 
 fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> Left {
-    return looked_up(light, volume, biased(light, surface, towards));
+    return looked_up(light, volume, biased(surface, towards));
 }

@@ -12,7 +12,7 @@ override NEAR_STEPS: u32 = 0u;
 // the trilinear fetch sees little of what the ray has met already; no piece of the way is left out. Every sample looks
 // light up equally far away, so that light volumes hold no more than that takes (src/plan/geometry/ahead.rs).
 fn near_light(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> Left {
-    let forward = (light.place_in_index - surface.point * light.perspective) * towards.per_length;
+    let forward = to_index(eye.space, towards.direction);
     var way = 0.0;
     var depth = Left(0.0);
     var step = 0u;
@@ -40,6 +40,6 @@ fn near_or_looked_up(light: Light, volume: texture_3d<f32>, surface: Surface, to
 #if NEAR_STEPS
     return near_light(light, volume, surface, towards);
 #else
-    return looked_up(light, volume, biased(light, surface, towards));
+    return looked_up(light, volume, biased(surface, towards));
 #endif
 }

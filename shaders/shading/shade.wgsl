@@ -57,9 +57,19 @@ override SHADOWED: u32 = 1u;
 override COMBINED: bool = false;
 
 // Where the light of a sample is looked up: the bias nearer to the source.
-fn biased(light: Light, surface: Surface, towards: Towards) -> vec3f {
-    let away = light.place_in_index - surface.point * light.perspective;
-    return surface.point + away * (towards.per_length * eye.shading.bias);
+fn biased(surface: Surface, towards: Towards) -> vec3f {
+    return surface.point + to_index(eye.space, towards.direction) * eye.shading.bias;
+}
+
+// A light as the side of a surface sees it to which opacity falls.
+fn seen_by(light: Light, surface: Surface) -> Risen {
+    let towards = to_light(light, surface.position);
+    if (ONE_SIDED) {
+        let outward = surface.normal * select(1.0, -1.0, surface.side < 0.0);
+        return risen_above(light, towards, outward, surface.surfaceness * abs(surface.side) * (1.0 - light.two_sided));
+    }
+    let facing = dot(surface.normal, towards.direction);
+    return Risen(towards, facing, facing, 1.0);
 }
 
 // What its light volume says of a light at an index-space point.
@@ -69,9 +79,10 @@ fn looked_up(light: Light, volume: texture_3d<f32>, p: vec3f) -> Left {
 
 fn lit_by(index: u32, volume: texture_3d<f32>, surface: Surface) -> Lit {
     let light = eye.lights[index];
-    let towards = to_light(light, surface.position);
-    let share = received(eye.shading, attenuation_at(light, volume, surface, towards));
-    return reflect_light(eye.shading, light, surface, towards.direction, share, width_seen(light, towards));
+    let risen = seen_by(light, surface);
+    let share = received(eye.shading, attenuation_at(light, volume, surface, risen.towards));
+    // Without shadows nothing keeps away what has not risen.
+    return reflect_light(eye.shading, light, surface, risen, share, 1.0 - eye.shading.strength);
 }
 
 fn add(a: Lit, b: Lit) -> Lit {
@@ -209,9 +220,9 @@ fn shade(found: Sampled, material: vec3f) -> vec3f {
     for (var i = SHADOWED; i < LIGHTS; i += 1u) {
         // Not from the copy: an index that varies would keep that as an array in memory.
         let light = bound_eye.lights[i];
-        let towards = to_light(light, surface.position);
-        let share = Left(hood_share(light, towards.direction));
-        lit = add(lit, reflect_light(s, light, surface, towards.direction, share, width_seen(light, towards)));
+        let risen = seen_by(light, surface);
+        let share = hood_share(light, risen.towards.direction);
+        lit = add(lit, reflect_light(s, light, surface, risen, Left(share), share));
     }
     let around = lit_by_sky(surface) + lit_by_bounces(surface);
     return material * (s.emission + s.ambient + around + s.diffuse * lit.diffuse) + s.specular * lit.specular;

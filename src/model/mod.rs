@@ -26,7 +26,8 @@ pub use self::settings::length::Length;
 pub use self::settings::light::area::{
     LightArea, LightShape, MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SIZE,
 };
-pub use self::settings::light::scattering::{MAX_ANISOTROPY, MAX_BOUNCES, Scattering};
+pub use self::settings::light::risen::Risen;
+pub use self::settings::light::scattering::{MAX_ANISOTROPY, MAX_BOUNCES, MOST_LEAST_BLOCKS, Scattering};
 pub use self::settings::light::sky::{
     MAX_PICTURE_RADIANCE, SKY_AHEAD, SKY_DIRECTIONS, Sky, SkyMode, SkyPicture, SkyRadiance,
 };

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::shadow_ray::ShadowRays;
 use super::{Reference, linear_from_srgb};
-use crate::model::{LightKind, Projection, SceneLight, ShadowAlgorithm};
+use crate::model::{Projection, SceneLight, ShadowAlgorithm};
 use crate::plan::SweepFrame;
 
 impl Reference<'_> {
@@ -56,16 +56,15 @@ impl Reference<'_> {
         let index = self.scene.index_from_scene.transform_point3(place);
         let (mut fallen, mut bare) = ([0.0; 3], [0.0; 3]);
         for (light, rays) in lamps {
-            let to_light = match light.kind {
-                LightKind::Parallel => light.direction(),
-                LightKind::Perspective => (DVec3::from(light.position) - place).normalize(),
-            };
+            let risen = self.with_points(*light).risen(place, up, 1.0);
             let cone = light.cone();
-            let hood = cone.share(-cone.axis.dot(to_light));
-            let arriving = rays.as_ref().map_or(hood, |rays| self.cured(rays.attenuation_above(index, up)));
+            let hood = cone.share(-cone.axis.dot(risen.towards)) * risen.share;
+            let of_rays = |rays: &ShadowRays<'_>| {
+                self.cured(rays.attenuation_above(index, up)) - self.uncast() * (1.0 - risen.share)
+            };
+            let arriving = rays.as_ref().map_or(hood, of_rays);
             for channel in 0..3 {
-                let rgb =
-                    linear_from_srgb(light.color[channel]) * light.intensity * to_light.dot(up).max(0.0);
+                let rgb = linear_from_srgb(light.color[channel]) * light.intensity * risen.facing.max(0.0);
                 fallen[channel] += rgb * arriving;
                 bare[channel] += rgb * hood;
             }

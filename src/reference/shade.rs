@@ -131,32 +131,37 @@ impl<'r> Shader<'r> {
         let mut diffuse: [f64; 3] = std::array::from_fn(|c| flat + sky[c] + bounced[c]);
         let mut specular = [0.0; 3];
         for lamp in &self.lamps {
-            let to_light = match lamp.light.kind {
-                LightKind::Parallel => lamp.light.direction(),
-                LightKind::Perspective => (DVec3::from(lamp.light.position) - place).normalize_or(DVec3::Z),
-            };
+            let has_horizon = is_one_sided && lamp.light.casts_shadows;
+            let horizon = if has_horizon { side.abs() * surface.weight } else { 0.0 };
+            let risen = self.reference.with_points(lamp.light).risen(place, outward, horizon);
+            let to_light = risen.towards;
             let arriving = self.arriving(lamp, sample, to_light);
-            let facing = surface.normal.dot(to_light);
-            let reflected = if is_one_sided && lamp.light.casts_shadows {
-                let rising = 0.5 + 0.5 * side;
-                rising * facing.max(0.0) + (1.0 - rising) * (-facing).max(0.0)
+            let reflected = if has_horizon {
+                let before = 0.5 + 0.5 * side.abs();
+                // What has not risen does not count, even where shadows do not.
+                let counted = match lamp.attenuated {
+                    Attenuated::Not => arriving * risen.share,
+                    _ => arriving - self.reference.uncast() * (1.0 - risen.share),
+                };
+                counted * before * risen.facing.max(0.0)
+                    + arriving * (1.0 - before) * (-risen.middle).max(0.0)
             } else {
-                facing.abs()
+                arriving * risen.middle.abs()
             };
             // Where there is no surface, what matter scatters towards the eye of light that comes from there.
             let amid =
                 henyey_greenstein(self.reference.settings.scattering.anisotropy, -to_light.dot(to_eye));
-            let reflected = amid + (reflected - amid) * surface.weight;
+            let reflected = arriving * amid * (1.0 - surface.weight) + reflected * surface.weight;
             let half_way = (to_light + to_eye).normalize_or_zero();
             let mirrored = if outward.dot(to_light) > 0.0 {
-                let wider = 1.0 / (1.0 + shading.shininess * width_seen(&lamp.light, place) / 16.0);
+                let wider = 1.0 / (1.0 + shading.shininess * lamp.light.width_seen(place) / 16.0);
                 let mirrored = outward.dot(half_way).max(0.0).powf(shading.shininess * wider) * wider;
                 side.abs() * surface.weight * mirrored
             } else {
                 0.0
             };
             for channel in 0..3 {
-                diffuse[channel] += lamp.rgb[channel] * arriving * shading.diffuse * reflected;
+                diffuse[channel] += lamp.rgb[channel] * shading.diffuse * reflected;
                 specular[channel] += lamp.rgb[channel] * arriving * shading.specular * mirrored;
             }
         }
@@ -318,18 +323,16 @@ impl Reference<'_> {
         let light = (shadows.gain * left + shadows.ambient_offset).min(1.0);
         1.0 - shadows.strength * (1.0 - light)
     }
-}
 
-/// sin² of half the width of a light as it is seen from a place in the scene; 0 of a point.
-fn width_seen(light: &SceneLight, place: DVec3) -> f64 {
-    let Some(area) = light.area else { return 0.0 };
-    let away = match light.kind {
-        // Its extent is that of one at a distance of 1.
-        LightKind::Parallel => 1.0,
-        LightKind::Perspective => DVec3::from(light.position).distance(place),
-    };
-    let tangent = 0.5 * (area.right.length_squared() + area.up.length_squared()) / (away * away);
-    tangent / (1.0 + tangent)
+    /// What of a light counts of which nothing is left, and nothing is added.
+    pub(super) fn uncast(&self) -> f64 {
+        1.0 - self.settings.shadows.strength
+    }
+
+    /// A light for which more points than its middle stand, if it has a size.
+    pub(super) fn with_points(&self, light: SceneLight) -> SceneLight {
+        SceneLight { area: light.area.filter(|_| self.settings.shadows.area.samples > 1), ..light }
+    }
 }
 
 #[cfg(test)]

@@ -269,6 +269,10 @@ pub(crate) const PENUMBRA_WIDTH: f64 = 0.03;
 /// What a light that has a size loses behind something small against what a point loses, as a share of what is open.
 pub(crate) const PENUMBRA_ENERGY: f64 = 0.005;
 
+/// Where light ends on a ball, the mean difference from the mean of pictures lit by each point of a light alone, over that
+/// mean: rays nearby, which are one for all points, and surfaces that are a voxel soft.
+pub(crate) const TERMINATOR: f64 = 0.15;
+
 /// What of lights that have a size gets to the floor, on a map whose texels are as wide as half a voxel here, from sheets
 /// whose pixels are a voxel wide: rays find edges a little sharper.
 pub(crate) const FLOOR_PENUMBRA: Limit = Limit { max: 0.02, rmse: 1.6e-3 };

@@ -66,6 +66,16 @@ impl<'a> Alternatives<'a> {
         }
     }
 
+    /// The voxels along x, y, z in the file, of which a part can be read.
+    pub(crate) fn grid(&self, at: usize) -> Option<[usize; 3]> {
+        match self.dims(at) {
+            Some([x, y, z]) => {
+                Some([usize::try_from(x).ok()?, usize::try_from(y).ok()?, usize::try_from(z).ok()?])
+            }
+            None => self.held.grid,
+        }
+    }
+
     /// What opens it: it differs from what is shown in this alone.
     pub(crate) fn choice(&self, at: usize) -> Choice {
         let shown = self.held.choice();

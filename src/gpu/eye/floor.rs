@@ -13,7 +13,7 @@ use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
 use crate::gpu::volume::{Gpu, Levels};
 use crate::gpu::{GpuError, RenderOptions};
 use crate::math::SceneSpace;
-use crate::model::{Classification, Floor, MAX_LIGHTS, Settings, linear_from_srgb};
+use crate::model::{Classification, Floor, MAX_LIGHTS, SceneLight, Settings, linear_from_srgb};
 use crate::plan::{FloorPlace, LitLights, ray_reach};
 
 /// Rows per submission are fewer than the eye's by so much: a ray to every light is about as long as the one
@@ -136,7 +136,9 @@ fn uniform(
     let [map_x, map_y] = FloorPlace::of(settings).map_or([[0.0; 4]; 2], FloorPlace::lookup);
     let mut packed = [bytemuck::Zeroable::zeroed(); MAX_LIGHTS];
     for (at, (slot, light)) in packed.iter_mut().zip(lit.all()).enumerate() {
-        *slot = pack_light(&light.light, None, scene, settings);
+        // One point that stands for all of a light has no size, and there are no highlights on the floor.
+        let area = light.light.area.filter(|_| settings.shadows.area.samples > 1);
+        *slot = pack_light(&SceneLight { area, ..light.light }, None, scene, settings);
         // No rays to points where a map knows what they would find.
         if shadows.get(at).is_some_and(Option::is_some) {
             slot.points = 0;

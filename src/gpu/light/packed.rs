@@ -30,13 +30,9 @@ pub(crate) fn pack_light(
     let balance = if settings.shadows.algorithm.is_on() { settings.shadows.balance } else { 1.0 };
     let cone = light.cone();
     let linear = |c: f32| crate::model::linear_from_srgb(f64::from(c));
-    let to_index = &scene.index_from_scene;
-    let (place, place_in_index, perspective) = match light.kind {
-        LightKind::Parallel => (light.direction(), to_index.transform_vector3(light.direction()), 0.0),
-        LightKind::Perspective => {
-            let position = light.position.into();
-            (position, to_index.transform_point3(position), 1.0)
-        }
+    let (place, perspective) = match light.kind {
+        LightKind::Parallel => (light.direction(), 0.0),
+        LightKind::Perspective => (light.position.into(), 1.0),
     };
     let border = |of: fn(&LightArea) -> DVec3| light.area.map_or([0.0; 3], |area| of(&area).as_vec3().into());
     uniforms::Light {
@@ -48,18 +44,16 @@ pub(crate) fn pack_light(
         hood_inner: cone.cos_inner as f32,
         hood_axis: cone.axis.as_vec3().into(),
         hood_outer: cone.cos_outer as f32,
-        place_in_index: place_in_index.as_vec3().into(),
-        two_sided: f32::from(u8::from(!light.casts_shadows)),
         near_ahead: volume.map_or(0.0, |volume| 0.5 * volume.divisor as f64 * scene.smallest_edge()) as f32,
         points: light.area.map_or(1, |_| settings.shadows.area.samples),
         shape: light.area.map_or(0, |area| area.shape as u32),
         near_steps: light.near_steps(settings.near_field()),
         area_right: border(|area| area.right),
-        pad1: 0.0,
+        two_sided: f32::from(u8::from(!light.casts_shadows)),
         area_up: border(|area| area.up),
-        pad2: 0.0,
+        pad0: 0.0,
         area_near: border(|area| area.near),
-        pad3: 0.0,
+        pad1: 0.0,
     }
 }
 

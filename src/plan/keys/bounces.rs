@@ -28,6 +28,7 @@ pub struct BouncesKey {
     bounces: u32,
     directions: u32,
     resolution: Resolution,
+    least_blocks: u32,
 }
 
 /// Most points that stand for a light: what has bounced shows no edge of a shadow.
@@ -52,6 +53,7 @@ impl BouncesKey {
             density_scale,
             directions,
             resolution,
+            least_blocks,
         } = settings.scattering;
         let lights = LitLights::of(settings);
         let has_area = lights.shadowed().iter().any(|lit| lit.light.area.is_some());
@@ -71,6 +73,7 @@ impl BouncesKey {
             bounces,
             directions,
             resolution,
+            least_blocks,
         })
     }
 
@@ -101,9 +104,10 @@ impl BouncesKey {
         Scattering::directions_of_a_bounce(self.directions)
     }
 
-    /// How finely.
-    pub fn resolution(&self) -> Resolution {
-        self.resolution
+    /// Voxels along the edges of the blocks of a volume of so many.
+    pub fn divisor(&self, dims: [usize; 3]) -> usize {
+        let Self { resolution, least_blocks, .. } = *self;
+        Scattering { resolution, least_blocks, ..Scattering::default() }.divisor(dims)
     }
 
     /// How many points stand for lights that have a size.

@@ -114,8 +114,9 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
             };
             let middle = way(&light, point);
             let blocked = is_shadowed.then(|| rays.blocked(&lighting, &shading_cut, middle)).flatten();
-            let facing = normal.dot(middle.towards);
-            let facing = if is_one_sided && light.casts_shadows { facing } else { facing.abs() };
+            // Of a light that has a size, what has risen of it.
+            let risen = light.risen(point, normal, 1.0);
+            let facing = if is_one_sided && light.casts_shadows { risen.facing } else { risen.middle.abs() };
             Arrival {
                 transmittance: if is_shadowed { mean(&left) } else { 1.0 },
                 hood: mean(&through_hood),

@@ -108,8 +108,14 @@ fn mistakes_in_them_are_noticed() {
         in_shader(volume, from);
         assert!(disagree_in(&settings, N, from, to, Fault::None), "{to:?} for {from:?} is not noticed");
     }
-    settings.shadows.algorithm = ShadowAlgorithm::Direct;
     settings.lights[0].angle_deg = 80.0;
+    // Rays nearby that go into the matter below which the middle has set.
+    let (from, to) = ("half_width * weight;", "half_width * 0.0;");
+    in_shader("eye/gather.wgsl", from);
+    assert!(!disagree_in(&settings, N, "\u{0}", "", Fault::None));
+    assert!(disagree_in(&settings, N, from, to, Fault::None), "{to:?} for {from:?} is not noticed");
+    settings.shadows.algorithm = ShadowAlgorithm::Direct;
+    settings.shadows.strength = 0.7;
     assert!(!pictures_differ(&settings, "\u{0}", ""));
     for (from, to) in [
         ("* sqrt((first + end) / (2.0 * all));", "* ((first + end) / (2.0 * all));"),
@@ -117,6 +123,10 @@ fn mistakes_in_them_are_noticed() {
         ("light.area_up * across.y", "light.area_up * across.x"),
         ("return sum / f32(light.points);", "return sum / f32(light.points + 1u);"),
         ("shading.shininess * width / 16.0", "shading.shininess * width / 4.0"),
+        // What has risen shines as if from the middle; what has not counts, where shadows are weak.
+        ("disc.y * half_width, disc.x", "max(facing, 0.0), disc.x"),
+        ("disc.y * half_width, disc.x", "disc.y * half_width, 1.0"),
+        ("root * (2.0 + u * u) / 3.0", "root * (2.0 + u) / 3.0"),
     ] {
         in_shader("eye/gather.wgsl", from);
         assert!(pictures_differ(&settings, from, to), "{to:?} for {from:?} is not noticed");

@@ -173,8 +173,8 @@ macro_rules! sided_mutation {
 sided_mutation!(
     light_on_the_wrong_side,
     "eye/gather.wgsl",
-    "0.5 + 0.5 * surface.side",
-    "0.5 - 0.5 * surface.side"
+    "outer * max(risen.facing, 0.0)",
+    "outer * max(-risen.facing, 0.0)"
 );
 sided_mutation!(
     highlights_on_the_wrong_side,
@@ -347,7 +347,7 @@ scatter_mutation!(
     scattered_and_lit_without_rays_nearby,
     "scatter/eye.wgsl",
     "return near_light(light, volume, surface, towards);",
-    "return looked_up(light, volume, biased(light, surface, towards));"
+    "return looked_up(light, volume, biased(surface, towards));"
 );
 scatter_mutation!(
     scattered_with_the_gradient_flipped,

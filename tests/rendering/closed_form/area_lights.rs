@@ -3,13 +3,15 @@
 use std::f64::consts::PI;
 
 use chiaroscuro::data::{Samples, Volume};
-use chiaroscuro::model::{Engine, LightKind, LightShape, Resolution, Settings};
+use chiaroscuro::model::{
+    Engine, Light, LightKind, LightShape, NearField, Resolution, Settings, ShadowAlgorithm, Sides,
+};
 use glam::{DVec2, DVec3};
 
 use super::{base, renderer};
-use crate::common::{Dataset, attenuation};
+use crate::common::{Dataset, attenuation, render};
 use crate::scenes;
-use crate::thresholds::{F16_STEP, PENUMBRA, PENUMBRA_ENERGY, PENUMBRA_WIDTH};
+use crate::thresholds::{F16_STEP, PENUMBRA, PENUMBRA_ENERGY, PENUMBRA_WIDTH, TERMINATOR};
 
 /// Voxels along x and y, and along z.
 const DIMS: [usize; 3] = [124, 124, 84];
@@ -167,5 +169,67 @@ fn no_size_is_a_point() {
         let light = &mut settings.lights[0];
         (light.size, light.angle_deg) = (0.5, 20.0);
         assert!(farthest(&volume(&settings), &point) > 0.1, "a size is seen");
+    }
+}
+
+/// A ball beside which the light stands, so wide that a part of it sets long before the last.
+fn beside_a_ball(light: Light) -> Settings {
+    let mut settings = scenes::look();
+    settings.transfer = scenes::linear_extinction(4.0);
+    settings.shading.sides = Sides::One;
+    (settings.shading.ambient, settings.shading.specular) = (0.0, 0.0);
+    settings.shadows.near_field = NearField::Long;
+    settings.shadows.area.resolution = Resolution::Full;
+    settings.shadows.area.samples = 32;
+    settings.camera = scenes::straight(-60.0, 35.0);
+    settings.lights = vec![light];
+    settings
+}
+
+/// Where light ends on a surface is the mean over the points of a light: each shines only at what faces it.
+#[test]
+fn light_ends_where_the_last_point_sets() {
+    let n = 40;
+    let loaded = Dataset::new(scenes::ball(n, DVec3::splat(n as f64 / 2.0 - 0.5), 15.0));
+    let mut renderer = renderer();
+    let mut picture = |settings: &Settings| -> Vec<f64> {
+        let picture = render(&mut renderer, &loaded, settings, [96, 72]);
+        picture.light.iter().map(|&[r, ..]| f64::from(r)).collect()
+    };
+    for (kind, position, algorithm) in [
+        (LightKind::Parallel, [2.0, 0.6, 0.3], ShadowAlgorithm::Splat),
+        (LightKind::Perspective, [1.9, 0.5, -0.2], ShadowAlgorithm::Splat),
+        (LightKind::Parallel, [2.0, 0.6, 0.3], ShadowAlgorithm::Off),
+    ] {
+        let disc =
+            Light { shape: LightShape::Disc, angle_deg: 50.0, size: 1.6, ..scenes::light(kind, position) };
+        let mut settings = beside_a_ball(disc);
+        settings.shadows.algorithm = algorithm;
+        let found = picture(&settings);
+        let points = settings.lights[0].in_scene(&settings.camera).points(32);
+        let mut mean = vec![0.0; found.len()];
+        for point in &points {
+            let mut alone = settings.clone();
+            (alone.lights[0].shape, alone.lights[0].position) = (LightShape::Point, point.position);
+            let share = 1.0 / points.len() as f64;
+            mean.iter_mut().zip(picture(&alone)).for_each(|(sum, light)| *sum += light * share);
+        }
+        // As if all of it shone from its middle.
+        settings.shadows.area.samples = 1;
+        let middle = picture(&settings);
+        // Where half of the light or more has set, which is where it is weak.
+        let brightest = mean.iter().copied().fold(0.0, f64::max);
+        let is_low = |light: f64| light > 1e-3 * brightest && light < 0.2 * brightest;
+        let off = |picture: &[f64]| {
+            let low = picture.iter().zip(&mean).filter(|&(_, &mean)| is_low(mean));
+            let (sum, all) = low.fold((0.0, 0.0), |(sum, all), (a, b)| (sum + (a - b).abs(), all + b));
+            sum / all
+        };
+        let (off, of_middle) = (off(&found), off(&middle));
+        println!("{kind:?}, {algorithm:?}: off by {off:.3}, {of_middle:.3} from the middle");
+        assert!(
+            off <= TERMINATOR && of_middle >= 2.0 * TERMINATOR,
+            "{kind:?}, {algorithm:?}: {off} {of_middle}"
+        );
     }
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use eframe::egui::{Pos2, Rect, pos2};
+use eframe::egui::{Pos2, Rect, Vec2, pos2, vec2};
 use glam::DVec3;
 
 use super::theme;
@@ -17,6 +17,8 @@ const SPHERE_PER_VIEW: f64 = 0.9;
 const LEAST_ROOM: f64 = 0.5;
 /// Distance of a perspective light from the eye per notch of the wheel.
 const SIGHT_PER_NOTCH: f64 = 1.06;
+/// How far beside the line of sight a light behind the eye has a side, as a share of its distance: 1°.
+const LEAST_ASIDE: f64 = 0.017;
 /// Corners of a circle's polyline.
 const CIRCLE_POINTS: usize = 96;
 
@@ -27,6 +29,8 @@ pub(crate) struct Handle {
     pub position: Pos2,
     /// Further from the eye than the middle of the volume.
     pub behind: bool,
+    /// Where the light itself is, if that is not in the picture: from the handle, of length 1.
+    pub outside: Option<Vec2>,
 }
 
 /// The camera over the picture's rectangle.
@@ -72,19 +76,36 @@ impl View {
         (self.view_projection.camera.eye() - scene).dot(self.view_projection.camera.scene_from_view().z_axis)
     }
 
-    /// The handle of a light; `None` for one behind the eye.
+    /// The handle of a light: at the border for one that is outside of the picture, or beside the eye or behind it; `None`
+    /// for one right behind the eye, which has no side.
     pub(crate) fn handle(&self, light: &SceneLight) -> Option<Handle> {
         let scene = match light.kind {
             LightKind::Parallel => light.direction() * self.radius,
             LightKind::Perspective => DVec3::from(light.position),
         };
-        let position = self.point(scene)?;
+        let seen = self.point(scene).or_else(|| self.beside(scene))?;
         let inner = self.view_projection.picture.shrink(theme::HANDLE_INSET);
         let position = pos2(
-            position.x.clamp(inner.min.x, inner.max.x.max(inner.min.x)),
-            position.y.clamp(inner.min.y, inner.max.y.max(inner.min.y)),
+            seen.x.clamp(inner.min.x, inner.max.x.max(inner.min.x)),
+            seen.y.clamp(inner.min.y, inner.max.y.max(inner.min.y)),
         );
-        Some(Handle { position, behind: self.depth(scene) > self.depth(DVec3::ZERO) + 1e-9 })
+        let away = seen - position;
+        Some(Handle {
+            position,
+            behind: self.depth(scene) > self.depth(DVec3::ZERO) + 1e-9,
+            outside: (away.length() > theme::HANDLE_INSET).then(|| away.normalized()),
+        })
+    }
+
+    /// Beyond the border of the picture, to the side on which a point lies that the eye does not look towards.
+    fn beside(&self, scene: DVec3) -> Option<Pos2> {
+        let camera = &self.view_projection.camera;
+        let view = camera.scene_from_view();
+        let from_eye = scene - camera.eye();
+        let across = vec2(from_eye.dot(view.x_axis) as f32, -from_eye.dot(view.y_axis) as f32);
+        let picture = self.view_projection.picture;
+        let is_aside = f64::from(across.length()) > LEAST_ASIDE * from_eye.length();
+        is_aside.then(|| picture.center() + across.normalized() * picture.size().length())
     }
 
     /// To the right of the picture, in scene space.
@@ -113,7 +134,11 @@ impl View {
             LightKind::Parallel => {
                 (self.on_sphere(origin, direction, behind) * position.length().max(1e-3)).into()
             }
-            LightKind::Perspective => self.facing(position, to).map_or(light.position, Into::into),
+            LightKind::Perspective => {
+                // Of a light that the eye does not look towards, the hand has the middle of the picture's depth.
+                let through = if self.point(position).is_some() { position } else { DVec3::ZERO };
+                self.facing(through, to).map_or(light.position, Into::into)
+            }
         };
     }
 
@@ -234,6 +259,43 @@ mod tests {
             SceneLight { kind: LightKind::Perspective, position: [0.0, 0.0, 90.0], ..SceneLight::default() };
         if let Some(handle) = view.handle(&far) {
             assert!(view.view_projection.picture.contains(handle.position));
+        }
+    }
+
+    #[test]
+    fn lights_outside_of_the_picture_can_be_taken_into_it() {
+        for projection in [Projection::Perspective, Projection::Orthographic] {
+            let view = view(projection);
+            let (eye, axes) = {
+                let camera = &view.view_projection.camera;
+                (camera.eye(), camera.scene_from_view())
+            };
+            let picture = view.view_projection.picture;
+            for (right, up, back) in [(5.0, 0.0, -4.0), (0.0, 6.0, -4.0), (-6.0, 0.5, 0.0), (6.0, -3.0, 3.0)]
+            {
+                let place = eye + axes.x_axis * right + axes.y_axis * up + axes.z_axis * back;
+                let position = place.into();
+                let mut light =
+                    SceneLight { kind: LightKind::Perspective, position, ..SceneLight::default() };
+                let handle = view.handle(&light).expect("one");
+                let outside = handle.outside.expect("it is not in the picture");
+                assert!(picture.contains(handle.position), "{handle:?}");
+                assert!(f64::from(outside.x) * right - f64::from(outside.y) * up > 0.0, "{handle:?}");
+                let to = picture.center() + vec2(30.0, -20.0);
+                view.move_light(&mut light, to, handle.behind);
+                let after = view.handle(&light).expect("one");
+                assert!(
+                    after.position.distance(to) < 0.1 && after.outside.is_none(),
+                    "{after:?}, not {to:?}"
+                );
+            }
+            let behind = SceneLight {
+                kind: LightKind::Perspective,
+                position: (eye + axes.z_axis).into(),
+                ..SceneLight::default()
+            };
+            let has_side = projection == Projection::Perspective && view.handle(&behind).is_some();
+            assert!(!has_side, "right behind the eye");
         }
     }
 

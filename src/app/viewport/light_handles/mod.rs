@@ -118,6 +118,9 @@ impl LightHandles {
                 painter.circle_stroke(handle.position, radius + 4.0, Stroke::new(1.5, theme::ACCENT));
             }
             paint_handle(&painter, handle.position, radius, color, handle.behind);
+            if let Some(direction) = handle.outside {
+                paint_arrow(&painter, handle.position + direction * radius, direction, color);
+            }
             if response.hovered() {
                 ui.ctx().set_cursor_icon(egui::CursorIcon::Grab);
             }
@@ -187,4 +190,14 @@ fn paint_handle(painter: &egui::Painter, at: Pos2, radius: f32, color: Color32, 
         // A darker middle tells white lights from white material.
         painter.circle_stroke(at, radius - 3.0, Stroke::new(1.0, theme::OUTLINE.gamma_multiply(0.6)));
     }
+}
+
+/// Points of an arrow's length, and half of its width.
+const ARROW: Vec2 = Vec2::new(6.0, 5.0);
+
+/// An arrow from the border of a handle to where its light is.
+fn paint_arrow(painter: &egui::Painter, from: Pos2, direction: Vec2, color: Color32) {
+    let (foot, side) = (from + direction * 1.5, direction.rot90() * ARROW.y);
+    let corners = vec![foot + side, foot + direction * ARROW.x, foot - side];
+    painter.add(egui::Shape::convex_polygon(corners, color, Stroke::new(1.0, theme::OUTLINE)));
 }

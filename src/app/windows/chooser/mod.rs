@@ -93,7 +93,7 @@ impl Chooser {
                 ui.weak(text::chooser::KEYS);
             },
         );
-        let wanted: Vec<_> = visible.map(|at| all.choice(at)).collect();
+        let wanted: Vec<_> = visible.map(|at| (all.choice(at), all.grid(at))).collect();
         self.previews.look_at(&volume.source, volume.reading.among.as_ref());
         self.previews.make(&wanted, options, ctx);
         if let Some(at) = chosen {

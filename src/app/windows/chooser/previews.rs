@@ -1,4 +1,5 @@
-//! Small pictures of the volumes of a file: the middle slice of each, made one after the other beside the window.
+//! Small pictures of the volumes of a file: the middle slice of each, made one after the other beside the window. Of those
+//! whose size is known, nothing else is read where the file allows that.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -9,7 +10,7 @@ use image::imageops::{self, FilterType};
 
 use crate::app::windows::slices::image::{Grey, lookup, slice};
 use crate::app::worker::task::Work;
-use crate::data::load::{Choice, LoadControl, LoadOptions};
+use crate::data::load::{Choice, LoadControl, LoadOptions, Portion, Region, Stretch};
 use crate::data::{Volume, open};
 
 /// Pixels of the longer edge: twice the points, for dense screens.
@@ -85,7 +86,13 @@ impl Previews {
     }
 
     /// Takes what has been made, and makes the picture of the first volume in a list that has none.
-    pub(super) fn make(&mut self, wanted: &[Choice], options: &LoadOptions, ctx: &egui::Context) {
+    /// Of each comes the grid with it, if it is known.
+    pub(super) fn make(
+        &mut self,
+        wanted: &[(Choice, Option<[usize; 3]>)],
+        options: &LoadOptions,
+        ctx: &egui::Context,
+    ) {
         if let Some(made) = self.making.as_ref().and_then(|making| making.work.take())
             && let Some(making) = self.making.take()
         {
@@ -97,10 +104,11 @@ impl Previews {
             self.made.push((making.choice.clone(), texture));
         }
         // What has been scrolled away is not waited for.
-        if self.making.as_ref().is_some_and(|making| !wanted.contains(&making.choice)) {
+        let is_wanted = |making: &Making| wanted.iter().any(|(choice, _)| *choice == making.choice);
+        if self.making.as_ref().is_some_and(|making| !is_wanted(making)) {
             self.making = None;
         }
-        let Some(choice) = wanted.iter().find(|choice| !self.is_known(choice)) else { return };
+        let Some((choice, grid)) = wanted.iter().find(|(choice, _)| !self.is_known(choice)) else { return };
         if self.making.is_some() {
             return;
         }
@@ -109,12 +117,28 @@ impl Previews {
         let (choice_of, among) = (choice.clone(), self.among.clone());
         let options = LoadOptions { choice: choice_of, among, memory_budget_bytes, ..options.clone() };
         let (source, watched) = (self.source.clone(), Arc::clone(&control));
-        let task = move || open(&source, &options, &watched).ok().and_then(|volume| middle(&volume));
+        // What is read in part already stays as it is.
+        let slice = grid.filter(|_| options.choice.portion.is_none()).map(middle_slice);
+        let task = move || {
+            let of_slice = slice.and_then(|portion| {
+                let choice = Choice { portion: Some(portion), ..options.choice.clone() };
+                open(&source, &LoadOptions { choice, ..options.clone() }, &watched).ok()
+            });
+            let volume = of_slice.or_else(|| open(&source, &options, &watched).ok())?;
+            middle(&volume)
+        };
         // Without a thread there is no picture.
         if let Ok(work) = Work::start("preview", ctx, task) {
             self.making = Some(Making { choice: choice.clone(), control, work });
         }
     }
+}
+
+/// The middle slice of a grid.
+fn middle_slice([_, _, count]: [usize; 3]) -> Portion {
+    let all = Stretch { first: 0, end: None };
+    let middle = Stretch { first: count / 2, end: Some(count / 2 + 1) };
+    Portion { region: Some(Region([all, all, middle])), ..Portion::default() }
 }
 
 /// The middle slice in greys, as small as it is shown and with its proportions.
@@ -152,6 +176,23 @@ mod tests {
     }
 
     #[test]
+    fn what_is_read_for_a_picture_is_its_slice() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.npy");
+        let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+        let header = "{'descr': '|u1', 'fortran_order': False, 'shape': (5, 2, 3), }\n";
+        bytes.extend(u16::try_from(header.len()).unwrap().to_le_bytes());
+        bytes.extend(header.as_bytes());
+        bytes.extend(0..30);
+        std::fs::write(&file, bytes).unwrap();
+        let choice = Choice { portion: Some(middle_slice([3, 2, 5])), ..Choice::default() };
+        let options = LoadOptions { choice, ..LoadOptions::default() };
+        let volume = open(&file, &options, &LoadControl::new()).unwrap();
+        assert_eq!(volume.dims(), [3, 2, 1]);
+        assert_eq!((volume.value(0, 0, 0), volume.value(2, 1, 0)), (12.0, 17.0));
+    }
+
+    #[test]
     fn one_picture_is_made_at_a_time_and_none_after_the_window_is_closed() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("a.npy");
@@ -162,22 +203,25 @@ mod tests {
         bytes.extend((0..24).map(|at| at * 10));
         std::fs::write(&file, bytes).unwrap();
         let ctx = egui::Context::default();
-        let steps: Vec<_> = (0..4).map(|step| Choice { frame: Some(step), ..Choice::default() }).collect();
+        // The last step, and the size of another, are not those of the file.
+        let step = |step| Choice { frame: Some(step), ..Choice::default() };
+        let steps = [0, 1, 2, 3].map(|at| (step(at), Some([2, 2, if at == 1 { 9 } else { 2 }])));
         let mut previews = Previews::default();
         previews.look_at(&file, None);
         let start = std::time::Instant::now();
-        while !steps.iter().all(|step| previews.is_known(step)) {
+        while !steps.iter().all(|(step, _)| previews.is_known(step)) {
             previews.make(&steps, &LoadOptions::default(), &ctx);
             assert!(previews.made.len() <= 4 && start.elapsed().as_secs() < 60);
             std::thread::sleep(std::time::Duration::from_millis(1));
         }
-        assert!(matches!(previews.get(&steps[2]), Preview::Picture(_)));
-        assert!(matches!(previews.get(&steps[3]), Preview::Never), "there is no such time step");
-        previews.make(&[Choice::default()], &LoadOptions::default(), &ctx);
+        let get = |at: usize| previews.get(&steps[at].0);
+        assert!(matches!(get(1), Preview::Picture(_)) && matches!(get(2), Preview::Picture(_)));
+        assert!(matches!(get(3), Preview::Never), "there is no such time step");
+        previews.make(&[(Choice::default(), None)], &LoadOptions::default(), &ctx);
         let control = Arc::clone(&previews.making.as_ref().unwrap().control);
         previews.rest();
-        assert!(control.is_cancelled() && previews.is_known(&steps[0]), "what there is stays");
+        assert!(control.is_cancelled() && previews.is_known(&steps[0].0), "what there is stays");
         previews.look_at(Path::new("other"), None);
-        assert!(!previews.is_known(&steps[0]));
+        assert!(!previews.is_known(&steps[0].0));
     }
 }

@@ -65,7 +65,8 @@ impl Loaded {
             oldest.map(|at| self.bounces.swap_remove(at));
         }
         tools.pool.forget_groups();
-        let mut fresh = BouncesVolume::new(context, self.volume.volume.dims(), key.resolution())?;
+        let dims = self.volume.volume.dims();
+        let mut fresh = BouncesVolume::new(context, dims, key.divisor(dims))?;
         fresh.last_used = now;
         let slot = self.bounces.len();
         let settings = &request.settings;

@@ -16,18 +16,16 @@ pub struct Light {
     pub hood_inner: f32,
     pub hood_axis: [f32; 3],
     pub hood_outer: f32,
-    pub place_in_index: [f32; 3],
-    pub two_sided: f32,
     pub near_ahead: f32,
     pub points: u32,
     pub shape: u32,
     pub near_steps: u32,
     pub area_right: [f32; 3],
-    pub pad1: f32,
+    pub two_sided: f32,
     pub area_up: [f32; 3],
-    pub pad2: f32,
+    pub pad0: f32,
     pub area_near: [f32; 3],
-    pub pad3: f32,
+    pub pad1: f32,
 }
 
 /// `shading/lights.wgsl`.

@@ -1,6 +1,7 @@
 //! Lights, in scene space.
 
 pub(in crate::model) mod area;
+pub(in crate::model) mod risen;
 pub(in crate::model) mod scattering;
 pub(in crate::model) mod sky;
 pub(in crate::model) mod surroundings;

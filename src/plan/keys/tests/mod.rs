@@ -177,6 +177,7 @@ fn every_setting_causes_what_the_design_says() {
         ("scattering.density_scale", "0.5", Effect::Bounces),
         ("scattering.directions", "26", Effect::Bounces),
         ("scattering.resolution", "half", Effect::Bounces),
+        ("scattering.least_blocks", "64", Effect::Bounces),
         ("transfer.mixing", "seen", Effect::Bounces),
         ("lighting.curve.mixing", "seen", Effect::Nothing),
         ("cuts.crop", r#"{"on": true}"#, Effect::Nothing),
