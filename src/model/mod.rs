@@ -27,7 +27,7 @@ pub use self::settings::light::area::{
     LightArea, LightShape, MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SIZE,
 };
 pub use self::settings::light::risen::Risen;
-pub use self::settings::light::scattering::{MAX_ANISOTROPY, MAX_BOUNCES, MOST_LEAST_BLOCKS, Scattering};
+pub use self::settings::light::scattering::{MAX_ANISOTROPY, MAX_BOUNCES, Scattering};
 pub use self::settings::light::sky::{
     MAX_PICTURE_RADIANCE, SKY_AHEAD, SKY_DIRECTIONS, Sky, SkyMode, SkyPicture, SkyRadiance,
 };
@@ -39,8 +39,8 @@ pub use self::settings::sampling::{
     Classification, Engine, Gradients, Kernel, Quadrature, Sampling, SheetOrder, Slabs, THIN_SLABS,
 };
 pub use self::settings::shadows::{
-    AreaShadows, Deposit, LightStorage, MAX_BIAS_VOXELS, MAX_LIGHT_SAMPLES, NearField, Precision, Resolution,
-    ReverseKernel, ShadowAlgorithm, Shadows,
+    AreaShadows, Deposit, LightStorage, MAX_BIAS_VOXELS, MAX_LEAST_BLOCKS, MAX_LIGHT_SAMPLES, NearField,
+    Precision, Resolution, ReverseKernel, ShadowAlgorithm, Shadows,
 };
 pub use self::stored::bounds::MAX_LOOK_BYTES;
 pub use self::stored::library::{PRESETS, Preset, apply_relative};

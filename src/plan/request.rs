@@ -29,7 +29,7 @@ pub struct VolumeKey {
 impl Request {
     /// The volume as this picture shows it.
     pub fn shown_volume(&self) -> VolumeKey {
-        let VolumeId { content_id, ranges } = self.volume;
+        let VolumeId { content_id, ranges, .. } = self.volume;
         VolumeKey { content_id, shown: self.settings.shown(&ranges) }
     }
 }

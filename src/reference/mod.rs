@@ -232,7 +232,7 @@ impl<'a> Reference<'a> {
         if self.settings.combines_lights() {
             shadows.resolution
         } else {
-            self.light(index).resolution(shadows)
+            self.light(index).resolution(shadows, self.scene.dims)
         }
     }
 

@@ -3,7 +3,7 @@
 use chiaroscuro::data::{Samples, Volume};
 use chiaroscuro::model::{
     Camera, ControlPoint, Interpolation, Length, Light, LightKind, NearField, Projection, ReverseKernel,
-    Settings, Sides, TransferFunction,
+    Settings, Shadows, Sides, TransferFunction,
 };
 use glam::DVec3;
 
@@ -53,9 +53,10 @@ pub(crate) fn transfer() -> TransferFunction {
     }
 }
 
-/// One light and a turned camera.
+/// One light and a turned camera. Soft light is as coarse as it is asked for, however small the volume.
 pub(crate) fn look() -> Settings {
     Settings {
+        shadows: Shadows { least_blocks: 1, ..Shadows::default() },
         camera: Camera {
             azimuth_deg: 37.0,
             elevation_deg: 24.0,

@@ -251,10 +251,10 @@ pub(crate) const SAME_BOUNCED: Limit = Limit { max: 1.5e-3, rmse: 2e-4 };
 /// and 64 directions leave, and walks, of which so many are within 1 %.
 pub(crate) const LIGHT_BY_WALKS: f64 = 0.02;
 /// Pictures with everything on beside a path tracer's, the root mean square of the difference over the mean. At full resolution
-/// and in slabs of a quarter of a voxel up to 0.008 were found of surfaces and 0.013 of clouds, at the defaults 0.035 and
-/// 0.052 … 0.055: bounced light in blocks of four voxels, of 24; in blocks of two it is 0.024. Chance is 0.002.
+/// and in slabs of a quarter of a voxel up to 0.008 were found of surfaces, 0.013 of clouds and 0.018 of a scan, at the
+/// defaults 0.013, 0.024 and 0.017. Chance is 0.002.
 pub(crate) const ALL_LIGHT: f64 = 0.02;
-pub(crate) const ALL_LIGHT_DEFAULTS: f64 = 0.06;
+pub(crate) const ALL_LIGHT_DEFAULTS: f64 = 0.03;
 /// How far all light in a white furnace is from 1: what twelve bounces and their ratio leave of infinitely many.
 pub(crate) const FURNACE: f64 = 0.01;
 /// What a half space gives back of light, relative: 26 directions, and blocks of 0.6 of an optical depth.

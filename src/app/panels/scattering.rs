@@ -7,7 +7,7 @@ use super::super::text::common::TIMES;
 use super::Panels;
 use super::controls::{Number, advanced, choice};
 use super::shadows::RESOLUTIONS;
-use crate::model::{MAX_ANISOTROPY, MAX_BOUNCES, MOST_LEAST_BLOCKS, SKY_DIRECTIONS};
+use crate::model::{MAX_ANISOTROPY, MAX_BOUNCES, SKY_DIRECTIONS};
 
 /// Shows the section.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
@@ -34,10 +34,6 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
             number.show(ui, &mut directions, f64::from(defaults.directions));
             scattering.directions = directions.round().clamp(least, most) as u32;
             choice(ui, text::shadows::RESOLUTION, &mut scattering.resolution, &RESOLUTIONS);
-            let mut blocks = f64::from(scattering.least_blocks);
-            let number = Number::new(text::scattering::LEAST_BLOCKS, 1.0..=f64::from(MOST_LEAST_BLOCKS));
-            number.decimals(0).show(ui, &mut blocks, f64::from(defaults.least_blocks));
-            scattering.least_blocks = blocks.round().clamp(1.0, f64::from(MOST_LEAST_BLOCKS)) as u32;
         });
     });
 }

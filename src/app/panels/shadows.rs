@@ -9,8 +9,8 @@ use super::{Panels, sampling};
 use crate::app::common::commands::Command;
 use crate::app::common::theme;
 use crate::model::{
-    Deposit, LightStorage, MAX_LIGHT_SAMPLES, NearField, Precision, Quality, Resolution, ReverseKernel,
-    ShadowAlgorithm,
+    Deposit, LightStorage, MAX_LEAST_BLOCKS, MAX_LIGHT_SAMPLES, NearField, Precision, Quality, Resolution,
+    ReverseKernel, ShadowAlgorithm,
 };
 
 /// From this share of black the meter warns: a third of the picture tells nothing any more.
@@ -106,6 +106,11 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
             number.show(ui, &mut points, f64::from(panels.defaults.shadows.area.samples));
             *samples = points.round().clamp(1.0, f64::from(MAX_LIGHT_SAMPLES)) as u32;
             choice(ui, text::shadows::AREA_RESOLUTION, &mut shadows.area.resolution, &RESOLUTIONS);
+            let mut blocks = f64::from(shadows.least_blocks);
+            let number =
+                Number::new(text::shadows::LEAST_BLOCKS, 1.0..=f64::from(MAX_LEAST_BLOCKS)).decimals(0);
+            number.show(ui, &mut blocks, f64::from(panels.defaults.shadows.least_blocks));
+            shadows.least_blocks = blocks.round().clamp(1.0, f64::from(MAX_LEAST_BLOCKS)) as u32;
         });
     });
 }

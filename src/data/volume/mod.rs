@@ -41,6 +41,8 @@ pub struct VolumeId {
     pub content_id: u64,
     /// See [`Volume::ranges`].
     pub ranges: ValueRanges,
+    /// See [`Volume::dims`].
+    pub dims: [usize; 3],
 }
 
 /// A scalar volume. Its invariants: at least one voxel, an invertible affine, a finite value range. Copies share the
@@ -337,7 +339,7 @@ impl Volume {
 
     /// What pictures are asked for by.
     pub fn id(&self) -> VolumeId {
-        VolumeId { content_id: self.content_id, ranges: self.ranges }
+        VolumeId { content_id: self.content_id, ranges: self.ranges, dims: self.dims }
     }
 
     /// One voxel in data units, as the file has it.

@@ -3,6 +3,7 @@
 use crate::gpu::sky::volume::{SUM_BYTES, divisor_for};
 use crate::gpu::volume::texture_3d;
 use crate::gpu::{Context, GpuError};
+use crate::model::Resolution;
 
 /// Most texels that the rays of one direction may take: 256 MiB of sheets of colours.
 const MOST_TEXELS: u64 = 1 << 25;
@@ -21,13 +22,13 @@ pub(crate) struct BouncesVolume {
 }
 
 impl BouncesVolume {
-    /// Makes the texture for blocks of so many voxels along each edge, or of more; nothing is filled yet.
+    /// Makes the texture; nothing is filled yet.
     ///
     /// # Errors
     /// When memory is out.
-    pub(crate) fn new(context: &Context, grid: [usize; 3], divisor: usize) -> Result<Self, GpuError> {
+    pub(crate) fn new(context: &Context, grid: [usize; 3], resolution: Resolution) -> Result<Self, GpuError> {
         let most_sums = context.device.limits().max_storage_buffer_binding_size / SUM_BYTES;
-        let divisor = divisor_for(grid, divisor, (MOST_TEXELS, most_sums));
+        let divisor = divisor_for(grid, resolution, (MOST_TEXELS, most_sums));
         let dims = grid.map(|n| n.div_ceil(divisor));
         let texture = context.texture(&texture_3d(
             "BouncesVolume::texture",

@@ -39,7 +39,7 @@ impl SkyVolume {
         floor: Option<FloorPlace>,
     ) -> Result<Self, GpuError> {
         let most_sums = context.device.limits().max_storage_buffer_binding_size / SUM_BYTES;
-        let divisor = divisor_for(grid, resolution.divisor(), (MOST_TEXELS, most_sums));
+        let divisor = divisor_for(grid, resolution, (MOST_TEXELS, most_sums));
         let dims = grid.map(|n| n.div_ceil(divisor));
         let texture = context.texture(&texture_3d(
             "SkyVolume::texture",
@@ -66,10 +66,14 @@ impl SkyVolume {
     }
 }
 
-/// Voxels along the edge of a block: so many, or twice or more times as many where the rays of one direction would take more texels
+/// Voxels along the edge of a block: those of a resolution, or more where the rays of one direction would take more texels
 /// than they may, or there would be more blocks than the adapter's buffers hold sums for.
-pub(crate) fn divisor_for(grid: [usize; 3], least: usize, (most_texels, most_sums): (u64, u64)) -> usize {
-    let mut divisor = least;
+pub(crate) fn divisor_for(
+    grid: [usize; 3],
+    resolution: Resolution,
+    (most_texels, most_sums): (u64, u64),
+) -> usize {
+    let mut divisor = resolution.divisor();
     let texels = |divisor: usize| {
         let [x, y, z] = grid.map(|n| n.div_ceil(divisor) as u64);
         // Rays drift by a block per slice at most.
@@ -88,19 +92,17 @@ mod tests {
 
     #[test]
     fn large_volumes_are_followed_in_larger_blocks() {
-        let of = |n: usize, resolution: Resolution| {
-            divisor_for([n; 3], resolution.divisor(), (MOST_TEXELS, u64::MAX))
-        };
+        let of = |n: usize, resolution| divisor_for([n; 3], resolution, (MOST_TEXELS, u64::MAX));
         assert_eq!(of(256, Resolution::Full), 1);
         assert_eq!(of(257, Resolution::Full), 2);
         assert_eq!(of(512, Resolution::Half), 2);
         assert_eq!(of(1024, Resolution::Half), 4);
         assert_eq!(of(2048, Resolution::Quarter), 8);
         // Of a row of voxels 256 blocks fit: their rays drift as far as they go.
-        assert_eq!(divisor_for([4096, 1, 1], 1, (MOST_TEXELS, u64::MAX)), 16);
+        assert_eq!(divisor_for([4096, 1, 1], Resolution::Full, (MOST_TEXELS, u64::MAX)), 16);
         // The least that adapters bind is 128 MiB.
         let least = (128 << 20) / SUM_BYTES;
-        assert_eq!(divisor_for([256; 3], 1, (MOST_TEXELS, least)), 2);
-        assert_eq!(divisor_for([203; 3], 1, (MOST_TEXELS, least)), 1);
+        assert_eq!(divisor_for([256; 3], Resolution::Full, (MOST_TEXELS, least)), 2);
+        assert_eq!(divisor_for([203; 3], Resolution::Full, (MOST_TEXELS, least)), 1);
     }
 }

@@ -21,6 +21,7 @@ impl Settings {
             reverse_kernel,
             near_field,
             area,
+            least_blocks,
             strength: _,
             ambient_offset: _,
             gain: _,
@@ -44,6 +45,7 @@ impl Settings {
             reverse_kernel,
             near_field,
             area,
+            least_blocks,
             ..self.shadows
         };
         let classification = self.sampling.classification;

@@ -5,8 +5,8 @@ use crate::data::single_line;
 use crate::model::{
     AreaShadows, Background, Camera, ClipPlane, ControlPoint, CropBox, Cuts, Floor, Hood, Kept, Kernel,
     Light, MAX_ANISOTROPY, MAX_BIAS_VOXELS, MAX_BOUNCES, MAX_EXPOSURE, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS,
-    MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SAMPLES, MAX_LIGHT_SIZE, MAX_NAME, MAX_PICTURE_RADIANCE,
-    MAX_PLANE_OFFSET, MAX_POINTS, MIN_CROP, MIN_EXPOSURE, MOST_LEAST_BLOCKS, Output, SKY_DIRECTIONS,
+    MAX_LEAST_BLOCKS, MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SAMPLES, MAX_LIGHT_SIZE, MAX_NAME,
+    MAX_PICTURE_RADIANCE, MAX_PLANE_OFFSET, MAX_POINTS, MIN_CROP, MIN_EXPOSURE, Output, SKY_DIRECTIONS,
     Sampling, Scattering, Settings, Shading, Shadows, Sky, SkyPicture,
 };
 
@@ -142,17 +142,8 @@ impl Settings {
         number(turn_deg, -1e6, 1e6, 0.0);
         number(density_scale, 0.0, 1e3, 1.0);
         *directions = (*directions).clamp(*SKY_DIRECTIONS.start(), *SKY_DIRECTIONS.end());
-        let Scattering {
-            bounces,
-            albedo,
-            strength,
-            anisotropy,
-            density_scale,
-            directions,
-            resolution: _,
-            least_blocks,
-        } = &mut self.scattering;
-        *least_blocks = (*least_blocks).min(MOST_LEAST_BLOCKS);
+        let Scattering { bounces, albedo, strength, anisotropy, density_scale, directions, resolution: _ } =
+            &mut self.scattering;
         *bounces = (*bounces).min(MAX_BOUNCES);
         number(albedo, 0.0, 1.0, default.scattering.albedo);
         number(strength, 0.0, 100.0, 1.0);
@@ -191,7 +182,9 @@ impl Settings {
             reverse_kernel: _,
             near_field: _,
             area: AreaShadows { samples, resolution: _ },
+            least_blocks,
         } = &mut self.shadows;
+        *least_blocks = (*least_blocks).clamp(1, MAX_LEAST_BLOCKS);
         number(strength, 0.0, 1.0, default.shadows.strength);
         number(ambient_offset, 0.0, 1.0, default.shadows.ambient_offset);
         number(gain, 0.0, 100.0, default.shadows.gain);

@@ -58,6 +58,18 @@ pub enum Resolution {
 }
 
 impl Resolution {
+    /// This, or as much finer as a volume of so many voxels needs to have that many blocks along its longest edge.
+    #[must_use]
+    pub fn with_blocks(self, dims: [usize; 3], least: u32) -> Self {
+        let longest = dims.into_iter().max().unwrap_or(1);
+        let has_enough = |resolution: Self| longest.div_ceil(resolution.divisor()) >= least as usize;
+        match self {
+            Self::Quarter if has_enough(Self::Quarter) => Self::Quarter,
+            Self::Quarter | Self::Half if has_enough(Self::Half) => Self::Half,
+            _ => Self::Full,
+        }
+    }
+
     /// Data voxels per light voxel along an axis.
     pub fn divisor(self) -> usize {
         match self {
@@ -206,7 +218,14 @@ pub struct Shadows {
     pub near_field: NearField,
     /// Lights that have a size.
     pub area: AreaShadows,
+    /// In how many blocks along the volume's longest edge soft light is found at least, as far as there are voxels: that of
+    /// lights that have a size, of the sky, and light that bounces. What is small in voxels is as large in the picture as
+    /// anything else.
+    pub least_blocks: u32,
 }
+
+/// As many can be asked for, whatever the resolution.
+pub const MAX_LEAST_BLOCKS: u32 = 256;
 
 impl Default for Shadows {
     fn default() -> Self {
@@ -230,11 +249,18 @@ impl Default for Shadows {
             reverse_kernel: ReverseKernel::Tent,
             near_field: NearField::Short,
             area: AreaShadows::default(),
+            // What a volume of 128³ voxels has at a quarter.
+            least_blocks: 32,
         }
     }
 }
 
 impl Shadows {
+    /// The resolution of soft light in a volume of so many voxels, for which another is set.
+    pub fn soft(&self, resolution: Resolution, dims: [usize; 3]) -> Resolution {
+        resolution.with_blocks(dims, self.least_blocks)
+    }
+
     /// Distance between the samples of a ray to a light, in scene units: the slab's thickness.
     pub fn ray_step(&self, scene: &SceneSpace) -> f64 {
         self.slab * scene.smallest_edge()

@@ -28,7 +28,8 @@ pub struct BouncesKey {
     bounces: u32,
     directions: u32,
     resolution: Resolution,
-    least_blocks: u32,
+    /// That of previews.
+    previewed: Resolution,
 }
 
 /// Most points that stand for a light: what has bounced shows no edge of a shadow.
@@ -53,7 +54,6 @@ impl BouncesKey {
             density_scale,
             directions,
             resolution,
-            least_blocks,
         } = settings.scattering;
         let lights = LitLights::of(settings);
         let has_area = lights.shadowed().iter().any(|lit| lit.light.area.is_some());
@@ -72,8 +72,8 @@ impl BouncesKey {
             density_scale,
             bounces,
             directions,
-            resolution,
-            least_blocks,
+            resolution: settings.shadows.soft(resolution, request.volume.dims),
+            previewed: settings.shadows.soft(Resolution::Quarter, request.volume.dims),
         })
     }
 
@@ -83,7 +83,7 @@ impl BouncesKey {
         Self {
             bounces: self.bounces.min(PREVIEW_BOUNCES),
             directions: self.directions.min(PREVIEW_DIRECTIONS),
-            resolution: Resolution::Quarter,
+            resolution: self.previewed,
             points: 1,
             ..self.clone()
         }
@@ -104,10 +104,9 @@ impl BouncesKey {
         Scattering::directions_of_a_bounce(self.directions)
     }
 
-    /// Voxels along the edges of the blocks of a volume of so many.
-    pub fn divisor(&self, dims: [usize; 3]) -> usize {
-        let Self { resolution, least_blocks, .. } = *self;
-        Scattering { resolution, least_blocks, ..Scattering::default() }.divisor(dims)
+    /// How finely.
+    pub fn resolution(&self) -> Resolution {
+        self.resolution
     }
 
     /// How many points stand for lights that have a size.

@@ -118,6 +118,8 @@ impl LightKey {
         let hooded = *hooded && *kind == LightKind::Perspective;
         let Shadows {
             algorithm,
+            // In the resolution of soft light.
+            least_blocks: _,
             strength: _,
             ambient_offset: _,
             gain: _,
@@ -172,7 +174,7 @@ impl LightKey {
             resolution: if request.settings.combines_lights() {
                 shadows.resolution
             } else {
-                light.resolution(shadows)
+                light.resolution(shadows, request.volume.dims)
             },
             precision: *precision,
             shading_cut: cuts.shading(),

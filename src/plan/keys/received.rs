@@ -69,6 +69,7 @@ impl ReceivedLight {
             reverse_kernel: _,
             near_field: _,
             area: _,
+            least_blocks: _,
         } = settings.shadows;
         let near_field = settings.near_field();
         // Rays nearby take the place of a bias.

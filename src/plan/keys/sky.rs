@@ -14,6 +14,8 @@ pub struct SkyKey {
     density_scale: f64,
     directions: u32,
     resolution: Resolution,
+    /// That of previews.
+    previewed: Resolution,
 }
 
 /// Previews follow light from so many directions.
@@ -30,14 +32,15 @@ impl SkyKey {
             shading_cut: settings.cuts.shading(),
             density_scale: settings.sky.density_scale,
             directions: settings.sky.directions,
-            resolution: settings.sky.resolution,
+            resolution: settings.shadows.soft(settings.sky.resolution, request.volume.dims),
+            previewed: settings.shadows.soft(Resolution::Quarter, request.volume.dims),
         })
     }
 
     /// The key of a preview's volume.
     #[must_use]
     pub fn coarse(&self) -> Self {
-        Self { directions: PREVIEW_DIRECTIONS, resolution: Resolution::Quarter, ..self.clone() }
+        Self { directions: PREVIEW_DIRECTIONS, resolution: self.previewed, ..self.clone() }
     }
 
     /// From how many directions light is followed.

@@ -168,7 +168,7 @@ impl Reference<'_> {
     /// What light meets that is scattered.
     pub fn medium(&self) -> Medium {
         let scattering = &self.settings.scattering;
-        let divisor = scattering.divisor(self.scene.dims);
+        let divisor = self.settings.shadows.soft(scattering.resolution, self.scene.dims).divisor();
         let dims = self.scene.dims.map(|n| n.div_ceil(divisor));
         let table = self.gathered_table(Side::Eye);
         let level = (divisor as f64 / 2.0).max(1.0).log2();

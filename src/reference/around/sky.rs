@@ -37,7 +37,7 @@ impl Reference<'_> {
     /// How open to the sky places are, from as many directions and as finely as the settings say.
     pub fn openness(&self) -> Openness {
         let sky = &self.settings.sky;
-        self.openness_from(&sweep_directions(sky.directions), sky.resolution.divisor())
+        self.openness_from(&sweep_directions(sky.directions), self.sky_divisor())
     }
 
     /// The same from some directions, in blocks of so many voxels along an edge.
@@ -68,7 +68,7 @@ impl Reference<'_> {
         if !self.settings.has_sky_volume() {
             return Vec::new();
         }
-        let divisor = sky.resolution.divisor();
+        let divisor = self.sky_divisor();
         let extinction = self.sky_blocks(self.scene.dims.map(|n| n.div_ceil(divisor)), divisor);
         let of = |towards| {
             let frame = SweepFrame::new(&self.scene, divisor, towards);
@@ -94,7 +94,7 @@ impl Reference<'_> {
         if rays.is_empty() {
             return [bare; 2];
         }
-        let place = (point + 0.5) / self.settings.sky.resolution.divisor() as f64 - 0.5;
+        let place = (point + 0.5) / self.sky_divisor() as f64 - 0.5;
         let seen = [0, 1, 2].map(|c| {
             let from = |(frame, deposits): &(SweepFrame, Vec<f64>)| {
                 let radiance = sky.mean[c] + sky.slope[c].dot(frame.towards);
@@ -103,6 +103,11 @@ impl Reference<'_> {
             rays.iter().map(from).sum::<f64>() / rays.len() as f64
         });
         [[0, 1, 2].map(|c| (bare[c] + strength * (seen[c] - bare[c])).max(0.0)), bare]
+    }
+
+    /// Voxels along the edges of blocks.
+    fn sky_divisor(&self) -> usize {
+        self.settings.shadows.soft(self.settings.sky.resolution, self.scene.dims).divisor()
     }
 
     /// What attenuates the light of a sky in each block.

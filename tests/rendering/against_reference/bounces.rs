@@ -19,10 +19,7 @@ use crate::thresholds::{LIGHT_BY_WALKS, SAME_BOUNCED};
 const N: usize = 22;
 
 fn bouncing(settings: Settings) -> Settings {
-    // As coarse as it is asked for, however small the volume.
-    let least_blocks = 1;
-    let scattering =
-        Scattering { bounces: 4, albedo: 0.8, directions: 14, least_blocks, ..Scattering::default() };
+    let scattering = Scattering { bounces: 4, albedo: 0.8, directions: 14, ..Scattering::default() };
     Settings { scattering, ..settings }
 }
 

@@ -2,7 +2,7 @@
 
 use chiaroscuro::data::Dataset;
 use chiaroscuro::gpu::{Context, RenderOptions, Renderer, Runs, ShaderLibrary};
-use chiaroscuro::model::{ControlPoint, Light, LightKind, Settings, TransferFunction, apply_path};
+use chiaroscuro::model::{ControlPoint, Light, LightKind, Settings, Shadows, TransferFunction, apply_path};
 use glam::DVec3;
 
 use crate::common::context;
@@ -54,6 +54,8 @@ fn home() -> Settings {
             Light { kind: LightKind::Perspective, ..Light::default() },
         ],
         transfer: TransferFunction { points: vec![point(0.1, 0.0), point(1.0, 0.5)], ..Default::default() },
+        // As coarse as it is asked for, however small the volume.
+        shadows: Shadows { least_blocks: 1, ..Shadows::default() },
         ..Settings::default()
     }
 }

@@ -6,7 +6,7 @@ use chiaroscuro::data::{Samples, Volume, open};
 use chiaroscuro::gpu::{RenderOptions, Renderer};
 use chiaroscuro::model::{
     DensityRange, Light, LightKind, LightShape, Projection, Quality, Resolution, Scattering, SceneLight,
-    Settings, Sky, SkyMode, SkyRadiance, Slabs, srgb_from_linear,
+    Settings, Shadows, Sky, SkyMode, SkyRadiance, Slabs, srgb_from_linear,
 };
 use chiaroscuro::plan::picture_frame;
 use glam::DVec3;
@@ -41,6 +41,7 @@ fn look() -> Settings {
     let mut settings = scenes::look();
     isotropic(&mut settings);
     settings.range = DensityRange::Full;
+    settings.shadows.least_blocks = Shadows::default().least_blocks;
     settings.camera.projection = Projection::Orthographic;
     settings.shading.emission = 0.05;
     let light = |kind, position| scenes::light(kind, position);
@@ -312,6 +313,6 @@ fn all_light_is_that_of_a_path_tracer_in_a_scan() {
     for point in &mut settings.transfer.points {
         point.value = AIR + point.value.max(0.0) * (255.0 - AIR) / 255.0;
     }
-    // At the defaults light bounces in blocks of four of so few voxels: that is printed, and not limited.
-    check_finest("tooth", &Dataset::new(volume), 3072, &settings);
+    let usual = check_finest("tooth", &Dataset::new(volume), 3072, &settings);
+    assert!(usual <= ALL_LIGHT_DEFAULTS, "{usual}");
 }

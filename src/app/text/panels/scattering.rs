@@ -13,10 +13,6 @@ pub(crate) const ANISOTROPY: Named = named(
     "Forward",
     "Clouds and smoke scatter light on as it came, and glow before it; below 0 they throw it back",
 );
-pub(crate) const LEAST_BLOCKS: Named = named(
-    "Least blocks",
-    "In how many blocks along the longest edge bounced light is found at least: small volumes are as fine as large ones",
-);
 pub(crate) const DIRECTIONS: Named = named(
     "Bounce directions",
     "To how many sides light is followed on its last bounce: more is smoother, and takes longer",

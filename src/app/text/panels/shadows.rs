@@ -131,6 +131,11 @@ pub(crate) const AREA_RESOLUTION: Named = named(
     "Resolution of the light volumes of lights that have a size, whose shadows have less detail",
 );
 
+pub(crate) const LEAST_BLOCKS: Named = named(
+    "Least blocks",
+    "In how many blocks along the longest edge light of wide lights, of the sky and of bounces is found at least: small volumes are lit as finely as large ones",
+);
+
 /// How much of what is seen is nearly black.
 pub(crate) fn dark_share(share: f64) -> String {
     format!("{:.0} %", share * 100.0)

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use eframe::egui::{Pos2, Rect, Vec2, pos2, vec2};
+use eframe::egui::{Pos2, Rect, Vec2, vec2};
 use glam::DVec3;
 
 use super::theme;
@@ -84,16 +84,18 @@ impl View {
             LightKind::Perspective => DVec3::from(light.position),
         };
         let seen = self.point(scene).or_else(|| self.beside(scene))?;
-        let inner = self.view_projection.picture.shrink(theme::HANDLE_INSET);
-        let position = pos2(
-            seen.x.clamp(inner.min.x, inner.max.x.max(inner.min.x)),
-            seen.y.clamp(inner.min.y, inner.max.y.max(inner.min.y)),
-        );
+        // At the border in the direction in which the light is, as seen from the middle.
+        let picture = self.view_projection.picture;
+        let half = (picture.size() / 2.0 - Vec2::splat(theme::LIGHT_INSET)).max(Vec2::splat(1.0));
+        let out = seen - picture.center();
+        let beyond = (out.x.abs() / half.x).max(out.y.abs() / half.y).max(1.0);
+        let position = picture.center() + out / beyond;
         let away = seen - position;
         Some(Handle {
             position,
             behind: self.depth(scene) > self.depth(DVec3::ZERO) + 1e-9,
-            outside: (away.length() > theme::HANDLE_INSET).then(|| away.normalized()),
+            // Not where its own place is in the picture, in the margin that handles keep to.
+            outside: (!picture.contains(seen)).then(|| away.normalized()),
         })
     }
 
@@ -206,7 +208,7 @@ impl View {
 mod tests {
     use super::*;
     use crate::model::Fit;
-    use eframe::egui::vec2;
+    use eframe::egui::pos2;
 
     fn view(projection: Projection) -> View {
         let picture = Rect::from_min_size(pos2(10.0, 20.0), vec2(640.0, 480.0));

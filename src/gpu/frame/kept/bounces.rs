@@ -65,8 +65,7 @@ impl Loaded {
             oldest.map(|at| self.bounces.swap_remove(at));
         }
         tools.pool.forget_groups();
-        let dims = self.volume.volume.dims();
-        let mut fresh = BouncesVolume::new(context, dims, key.divisor(dims))?;
+        let mut fresh = BouncesVolume::new(context, self.volume.volume.dims(), key.resolution())?;
         fresh.last_used = now;
         let slot = self.bounces.len();
         let settings = &request.settings;

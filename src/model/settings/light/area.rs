@@ -133,10 +133,10 @@ impl LightArea {
 }
 
 impl SceneLight {
-    /// The resolution of its light volume.
-    pub fn resolution(&self, shadows: &Shadows) -> Resolution {
+    /// The resolution of its light volume for a volume of so many voxels.
+    pub fn resolution(&self, shadows: &Shadows, dims: [usize; 3]) -> Resolution {
         let Shadows { resolution, area, .. } = *shadows;
-        if self.area.is_some() { resolution.max(area.resolution) } else { resolution }
+        if self.area.is_some() { resolution.max(shadows.soft(area.resolution, dims)) } else { resolution }
     }
 
     /// Point lights that stand for this one: `count` of them, or the light itself if it is a point.

@@ -29,31 +29,15 @@ pub struct Scattering {
     pub density_scale: f64,
     /// In how many directions light is followed on its last bounce, the one that is seen.
     pub directions: u32,
-    /// How finely …
+    /// How finely.
     pub resolution: Resolution,
-    /// … and in how many blocks along the volume's longest edge at least, as far as there are voxels: what is small in voxels
-    /// is as large in the picture as anything else.
-    pub least_blocks: u32,
 }
-
-/// Most blocks along an edge that can be asked for, whatever the resolution.
-pub const MOST_LEAST_BLOCKS: u32 = 256;
 
 impl Scattering {
     /// In how many directions light is followed on all bounces but the last, of which there are `directions`: what they leave
     /// uneven, the last evens out.
     pub fn directions_of_a_bounce(directions: u32) -> u32 {
         (directions / 4).clamp(6, 14)
-    }
-
-    /// Voxels along the edges of the blocks of a volume of so many.
-    pub fn divisor(&self, dims: [usize; 3]) -> usize {
-        let longest = dims.into_iter().max().unwrap_or(1);
-        let mut divisor = self.resolution.divisor();
-        while divisor > 1 && longest.div_ceil(divisor) < self.least_blocks as usize {
-            divisor /= 2;
-        }
-        divisor
     }
 }
 
@@ -67,26 +51,6 @@ impl Default for Scattering {
             density_scale: 1.0,
             directions: 64,
             resolution: Resolution::Quarter,
-            // What a volume of 128³ voxels has at a quarter.
-            least_blocks: 32,
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn small_volumes_are_followed_in_smaller_blocks() {
-        let of = |n: usize, resolution, least_blocks| {
-            Scattering { resolution, least_blocks, ..Scattering::default() }.divisor([n, n / 2, 1])
-        };
-        assert_eq!(of(128, Resolution::Quarter, 32), 4);
-        assert_eq!(of(124, Resolution::Quarter, 32), 2);
-        assert_eq!(of(24, Resolution::Quarter, 32), 1);
-        assert_eq!(of(24, Resolution::Quarter, 0), 4);
-        assert_eq!(of(512, Resolution::Half, 32), 2);
-        assert_eq!(of(512, Resolution::Full, 32), 1);
     }
 }

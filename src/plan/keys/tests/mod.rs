@@ -24,7 +24,12 @@ fn request() -> Request {
         ..Settings::default()
     };
     let ranges = ValueRanges { all: ValueRange::new(-9.0, 9.0), robust: ValueRange::UNIT };
-    Request { volume: VolumeId { content_id: 1, ranges }, settings, size: [100, 80], coarse: None }
+    Request {
+        volume: VolumeId { content_id: 1, ranges, dims: [256; 3] },
+        settings,
+        size: [100, 80],
+        coarse: None,
+    }
 }
 
 /// With light that bounces.
@@ -177,7 +182,9 @@ fn every_setting_causes_what_the_design_says() {
         ("scattering.density_scale", "0.5", Effect::Bounces),
         ("scattering.directions", "26", Effect::Bounces),
         ("scattering.resolution", "half", Effect::Bounces),
-        ("scattering.least_blocks", "64", Effect::Bounces),
+        // There are as many.
+        ("shadows.least_blocks", "64", Effect::Nothing),
+        ("shadows.least_blocks", "128", Effect::Sky),
         ("transfer.mixing", "seen", Effect::Bounces),
         ("lighting.curve.mixing", "seen", Effect::Nothing),
         ("cuts.crop", r#"{"on": true}"#, Effect::Nothing),
