@@ -30,6 +30,7 @@ use std::time::Duration;
 
 use eframe::egui;
 
+use self::common::give_up::GiveUp;
 use self::common::{light_keys, shortcuts};
 use self::shell::{status_file, surroundings};
 use self::windows::files;
@@ -150,6 +151,7 @@ pub struct App {
     trusts_paths: bool,
     contact_sheet: ContactSheet,
     chooser: Chooser,
+    give_up: GiveUp,
     /// The next file is being looked for.
     neighbour: Option<Neighbour>,
     editor: TransferEditor,
@@ -286,6 +288,7 @@ impl eframe::App for App {
         let ctx = ui.ctx().clone();
         let start = std::time::Instant::now();
         ui.painter().add(paint_callback::fill(ctx.viewport_rect(), &self.window, ui.visuals().panel_fill));
+        self.give_up.begin(&ctx, &self.settings);
         let mut commands = Vec::new();
         let dropped = files::dropped(&ctx);
         if !dropped.is_empty() {
@@ -299,6 +302,7 @@ impl eframe::App for App {
         shortcuts::from_keys(&ctx, &mut commands);
         light_keys::nudge(&ctx, &mut self.settings, self.selected_light);
         self.windows(frame, &ctx, &mut commands);
+        self.give_up.end(&mut self.settings);
         self.ask_for_volume(frame, &ctx);
         self.history.observe(&ctx, &self.step());
         commands.extend(self.take_framed());

@@ -176,31 +176,36 @@ fn the_probe_says_what_light_arrives() {
     assert!(before == after, "and gone again");
 }
 
-/// Escape takes a light back to where its drag began.
+/// Escape takes everything back to where a drag began: a light, the camera, what an editor's hand has changed.
 #[test]
 fn escape_ends_a_drag_where_it_began() {
-    let mut harness = bare_window();
-    let before = harness.state().settings().clone();
+    let mut harness = window();
     let (rect, _) = harness.state().viewport_rect().unwrap();
     harness.hover_at(rect.center());
     harness.run_steps(2);
     let handle = harness.state().light_handle_positions()[0];
-    harness.event(Event::PointerMoved(handle));
-    harness.event(button(handle, true));
-    harness.run_steps(1);
-    for step in 1..=4 {
-        harness.event(Event::PointerMoved(handle + vec2(12.0, 9.0) * step as f32));
+    let slider = harness.get_by_role_and_label(egui::Role::Slider, "Strength").rect().center();
+    for (what, from) in
+        [("light", handle), ("camera", rect.left_bottom() + vec2(40.0, -30.0)), ("number", slider)]
+    {
+        let before = harness.state().settings().clone();
+        harness.event(Event::PointerMoved(from));
+        harness.event(button(from, true));
         harness.run_steps(1);
+        for step in 1..=4 {
+            harness.event(Event::PointerMoved(from + vec2(-12.0, 9.0) * step as f32));
+            harness.run_steps(1);
+        }
+        assert_ne!(harness.state().settings(), &before, "the {what} moves");
+        harness.key_press(egui::Key::Escape);
+        harness.run_steps(2);
+        assert_eq!(harness.state().settings(), &before, "{what}");
+        let end = from + vec2(90.0, 20.0);
+        harness.event(Event::PointerMoved(end));
+        harness.event(button(end, false));
+        harness.run_steps(2);
+        assert_eq!(harness.state().settings(), &before, "what follows moves nothing: {what}");
     }
-    assert_ne!(harness.state().settings().lights, before.lights, "the light moves");
-    harness.key_press(egui::Key::Escape);
-    harness.run_steps(2);
-    assert_eq!(harness.state().settings().lights, before.lights);
-    let end = handle + vec2(90.0, 20.0);
-    harness.event(Event::PointerMoved(end));
-    harness.event(button(end, false));
-    harness.run_steps(2);
-    assert_eq!(harness.state().settings().lights, before.lights, "what follows of the drag moves nothing");
     wait_until_idle(&mut harness);
 }
 

@@ -20,9 +20,9 @@ pub(crate) fn unfolded(width: f32) -> Harness<'static, App> {
     harness.remove_cursor();
     // Pictures of a window that high are larger than egui assumes to be safe.
     harness.input_mut().max_texture_side = Some(8192);
-    harness.set_size(Vec2::new(width, 3060.0));
+    harness.set_size(Vec2::new(width, 3700.0));
     harness.run_steps(3);
-    for section in ["Shading", "Clipping", "Floor", "Camera", "Compare", "Data"] {
+    for section in ["Sky and scattering", "Shading", "Clipping", "Floor", "Camera", "Compare", "Data"] {
         click(&mut harness, section);
         harness.run_steps(8);
     }

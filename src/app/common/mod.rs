@@ -5,6 +5,7 @@ pub(super) mod command_names;
 pub(super) mod commands;
 pub(super) mod dock;
 pub(super) mod frame;
+pub(super) mod give_up;
 pub(super) mod light_keys;
 pub(super) mod places;
 pub(super) mod reveal;

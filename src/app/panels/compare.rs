@@ -12,8 +12,9 @@ use crate::model::{Settings, Variant};
 pub(super) fn show(ui: &mut Ui, compare: &mut Compare, settings: &mut Settings, commands: &mut Vec<Command>) {
     switch(ui, text::compared::ON, &mut compare.on);
     ui.add_enabled_ui(compare.on, |ui| {
-        side(ui, text::compared::LEFT, &mut compare.left);
-        side(ui, text::compared::RIGHT, &mut compare.right);
+        let [left, right] = compare.called();
+        side(ui, text::compared::LEFT, &mut compare.left, &left);
+        side(ui, text::compared::RIGHT, &mut compare.right, &right);
         switch(ui, text::compared::DIFFERENCE, &mut compare.difference);
     });
     unlabelled(ui, |ui| {
@@ -38,18 +39,16 @@ pub(super) fn show(ui: &mut Ui, compare: &mut Compare, settings: &mut Settings, 
     }
 }
 
-fn side(ui: &mut Ui, named: Named, variant: &mut Variant) {
+fn side(ui: &mut Ui, named: Named, variant: &mut Variant, called: &str) {
     row(ui, named, |ui| {
-        let combo = egui::ComboBox::from_id_salt(named.name)
-            .selected_text(text::compared::variant(variant))
-            .width(120.0);
+        let combo = egui::ComboBox::from_id_salt(named.name).selected_text(called).width(120.0).truncate();
         let shown = combo.show_ui(ui, |ui| {
             for choice in Variant::PLAIN {
                 let label = text::compared::variant(&choice);
                 ui.selectable_value(variant, choice, label);
             }
             if let Variant::Look(_) | Variant::View(_) = variant {
-                ui.selectable_label(true, text::compared::variant(variant)).clicked();
+                ui.selectable_label(true, called).clicked();
             }
         });
         let name = text::compared::look(named.name);

@@ -113,7 +113,7 @@ fn row(ui: &mut Ui, table: &mut LabelTable, label: &LabelRow) -> bool {
         }
         let words = text::labels::opacity(number);
         ui.spacing_mut().interact_size.x = OPACITY_WIDTH;
-        let field = DragValue::new(&mut look.opacity).range(0.0..=1.0).speed(0.005).max_decimals(3);
+        let field = DragValue::new(&mut look.opacity).range(0.0..=1.0).speed(0.005).fixed_decimals(3);
         ui.name_inputs(words, |ui| ui.add(field)).on_hover_text(text::labels::OPACITY_TIP);
     });
     if look != before {

@@ -197,7 +197,8 @@ impl App {
                 reveal::show_section(ctx, text::sections::COMPARE, self.compare.on);
             }
             Command::Reveal(place) => {
-                self.layout.side = true;
+                let is_of_editor = place.section == text::transfer::TITLE;
+                *(if is_of_editor { &mut self.layout.transfer } else { &mut self.layout.side }) = true;
                 self.layout.picture_only = false;
                 reveal::reveal(ctx, place);
             }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::carried::Legacy;
 use super::error::AppError;
 use super::options::Options;
+use crate::app::common::give_up::GiveUp;
 use crate::app::common::theme;
 use crate::app::kept::Strip;
 use crate::app::layout::Layout;
@@ -167,6 +168,7 @@ impl App {
             trusts_paths: false,
             contact_sheet: ContactSheet::default(),
             chooser: Chooser::default(),
+            give_up: GiveUp::default(),
             neighbour: None,
             editor: TransferEditor::new(window.clone()),
             window,

@@ -74,7 +74,7 @@ fn open_window(
         .with_title(text::opening::PROGRAM)
         .with_app_id(APP_ID)
         .with_inner_size([1280.0, 800.0])
-        .with_min_inner_size([560.0, 420.0])
+        .with_min_inner_size([560.0, 360.0])
         .with_icon(icon::icon());
     let mut setup = wgpu_setup();
     if on_cpu {

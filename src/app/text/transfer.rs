@@ -2,6 +2,9 @@
 
 use super::{Named, named};
 
+/// What the editor as a whole is called, where its controls are sought.
+pub(crate) const TITLE: &str = "Transfer function";
+
 /// What screen readers call the plot.
 pub(crate) const PLOT: &str = "Transfer function plot";
 
@@ -28,7 +31,7 @@ pub(crate) const TRY_PRESETS_TIP: &str = "Shows each on your volume";
 
 pub(crate) const COLORS: &str = "Transfer function";
 pub(crate) const COLOR_MAP_TIP: &str = "Colours the visible values";
-pub(crate) const REVERSED: &str = "reversed";
+pub(crate) const REVERSED: &str = "Reversed";
 /// Of reading a transfer function from a file and writing it.
 pub(crate) const FILES_TIP: &str =
     "ParaView, Slicer, Inviwo, MRIcroGL and ImageJ; Voreen and AGAVE can be read";

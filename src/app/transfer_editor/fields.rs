@@ -52,7 +52,7 @@ pub(super) fn points(
         ui.label(text::transfer::several(selected.len()));
     }
     let label = ui.label(text::transfer::POINT_OPACITY);
-    ui.add(DragValue::new(&mut point.opacity).range(0.0..=1.0).speed(0.005).max_decimals(3))
+    ui.add(DragValue::new(&mut point.opacity).range(0.0..=1.0).speed(0.005).fixed_decimals(3))
         .labelled_by(label.id);
     if has_colors {
         color(ui, text::transfer::POINT_COLOR, &mut point.color);

@@ -1,10 +1,11 @@
 //! Menus of the transfer function editor: presets by domain, colour maps, and what moves the whole curve.
 
-use eframe::egui::{self, Color32, DragValue, Mesh, Rect, Sense, Ui, vec2};
+use eframe::egui::{self, Color32, DragValue, Mesh, Rect, Response, Sense, Ui, vec2};
 
 use super::super::text::{self, Named};
 use super::zoom::ShownValues;
 use crate::app::common::commands::Command;
+use crate::app::common::reveal;
 use crate::app::common::theme;
 use crate::app::common::volume_facts::{VolumeFacts, decimals};
 use crate::data::ValueRange;
@@ -91,6 +92,11 @@ fn strip(ui: &mut Ui, map: &ColorMap) {
     ui.painter().add(mesh);
 }
 
+/// Lets a control glow that was sought.
+pub(super) fn found(ui: &Ui, named: Named, control: &Response) {
+    reveal::glow(ui, text::transfer::TITLE, named.name, control.rect);
+}
+
 /// Moves the whole curve, or spreads it. The limits keep every point near the volume's values.
 pub(super) fn whole_curve(ui: &mut Ui, function: &mut TransferFunction, range: ValueRange) {
     let (Some(&first), Some(&last)) = (function.points.first(), function.points.last()) else { return };
@@ -100,10 +106,11 @@ pub(super) fn whole_curve(ui: &mut Ui, function: &mut TransferFunction, range: V
     let most = function.points.iter().map(|point| point.opacity).fold(0.0, f64::max);
     let mut opacity = most;
     let label = ui.label(text::transfer::OPACITY.name);
-    let field = DragValue::new(&mut opacity).speed(0.005).range(0.001..=1.0).max_decimals(3);
+    let field = DragValue::new(&mut opacity).speed(0.005).range(0.001..=1.0).fixed_decimals(3);
     // What a file brought stays until somebody changes it.
     let field = field.clamp_existing_to_range(false);
-    ui.add_enabled(most > 0.0, field).labelled_by(label.id).on_hover_text(text::transfer::OPACITY.tip);
+    let field = ui.add_enabled(most > 0.0, field).labelled_by(label.id);
+    found(ui, text::transfer::OPACITY, &field.on_hover_text(text::transfer::OPACITY.tip));
     if opacity != most && most > 0.0 {
         for point in &mut function.points {
             point.opacity = (point.opacity * opacity / most).min(1.0);
@@ -115,14 +122,16 @@ pub(super) fn whole_curve(ui: &mut Ui, function: &mut TransferFunction, range: V
         .range(range.low - span..=range.high + span)
         .max_decimals(decimals(range))
         .clamp_existing_to_range(false);
-    ui.add(level).labelled_by(label.id).on_hover_text(text::transfer::LEVEL.tip);
+    let level = ui.add(level).labelled_by(label.id).on_hover_text(text::transfer::LEVEL.tip);
+    found(ui, text::transfer::LEVEL, &level);
     let label = ui.label(text::transfer::WINDOW.name);
     let window = DragValue::new(&mut wide)
         .speed(span / 400.0)
         .range(span / 1000.0..=4.0 * span)
         .max_decimals(decimals(range))
         .clamp_existing_to_range(false);
-    ui.add(window).labelled_by(label.id).on_hover_text(text::transfer::WINDOW.tip);
+    let window = ui.add(window).labelled_by(label.id).on_hover_text(text::transfer::WINDOW.tip);
+    found(ui, text::transfer::WINDOW, &window);
     if to != middle || (wide != width && width > 0.0) {
         let stretch = if width > 0.0 { wide / width } else { 1.0 };
         function.shift_and_stretch(to - middle, stretch);

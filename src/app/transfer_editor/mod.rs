@@ -180,7 +180,8 @@ impl TransferEditor {
             menus::whole_curve(ui, function, span);
             menus::shapes(ui, function, volume, self.zoom.shown(span));
             let draw = text::transfer::FREEHAND;
-            ui.toggle_value(&mut self.freehand.on, draw.name).on_hover_text(draw.tip);
+            let draws = ui.toggle_value(&mut self.freehand.on, draw.name).on_hover_text(draw.tip);
+            menus::found(ui, draw, &draws);
         } else if fields::points(
             ui,
             function,
@@ -218,7 +219,8 @@ impl TransferEditor {
             commands.push(Command::AutomaticTransfer);
         }
         let log = text::transfer::LOG_HISTOGRAM;
-        ui.checkbox(&mut self.log_histogram, log.name).on_hover_text(log.tip);
+        let tick = ui.checkbox(&mut self.log_histogram, log.name).on_hover_text(log.tip);
+        menus::found(ui, log, &tick);
         menus::colors(ui, function, commands);
         menus::presets(ui, commands);
         self.zoom.button(ui);

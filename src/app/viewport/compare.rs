@@ -103,6 +103,15 @@ impl Compare {
         rect.shrink2(vec2(0.0, if self.on { MARGIN + row + 2.0 * PADDING.y } else { 0.0 }))
     }
 
+    /// What the left and the right one are called.
+    pub(crate) fn called(&self) -> [String; 2] {
+        let sides = [(&self.left, &self.names[0]), (&self.right, &self.names[1])];
+        sides.map(|(variant, name)| match (variant, name) {
+            (Variant::Look(_) | Variant::View(_), Some(name)) => name.clone(),
+            _ => text::compared::variant(variant).to_owned(),
+        })
+    }
+
     /// The divider and what is known of the difference, over the picture.
     pub(crate) fn ui(&mut self, ui: &Ui, rect: Rect, pictures: &Pictures) {
         if !self.on || rect.width() < 4.0 * GRIP {
@@ -111,11 +120,7 @@ impl Compare {
         if !self.difference {
             self.divide(ui, rect);
         }
-        let called = |variant: &Variant, at: usize| match (variant, &self.names[at]) {
-            (Variant::Look(_) | Variant::View(_), Some(name)) => name.clone(),
-            _ => text::compared::variant(variant).to_owned(),
-        };
-        let (left, right) = (&*called(&self.left, 0), &*called(&self.right, 1));
+        let [left, right] = &self.called();
         let label = |at: Pos2, align: Align2, text: &str| chip(ui, at, align, text);
         let top = rect.top() + MARGIN;
         if self.difference {

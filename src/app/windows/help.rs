@@ -8,9 +8,6 @@ use crate::app::text;
 use crate::app::viewport::Facts;
 use crate::model::SceneAxis;
 
-/// Room that keys and mouse take.
-const TABLES: egui::Vec2 = egui::vec2(960.0, 550.0);
-
 /// Two columns: what is done, and what happens.
 fn table(ui: &mut egui::Ui, name: &str, rows: impl IntoIterator<Item = (String, String)>) {
     egui::Grid::new(name).num_columns(2).striped(true).spacing([16.0, 4.0]).show(ui, |ui| {
@@ -35,14 +32,14 @@ impl Help {
     /// Shows the windows that are open; some names say which axis of the scene points up.
     pub(crate) fn ui(&mut self, ctx: &egui::Context, facts: &Facts, up: SceneAxis) {
         // All of it where the window has room, else with scroll bars.
-        let size = TABLES.min(ctx.content_rect().size() - egui::vec2(90.0, 130.0));
+        let room = frame::room(ctx);
+        let size = room.size() - egui::vec2(40.0, 60.0);
         let window = egui::Window::new(text::help::KEYS_AND_MOUSE)
             .open(&mut self.keys)
             .resizable(false)
             .collapsible(false);
-        let window = window.constrain_to(frame::room(ctx));
-        let shown = window.default_pos([40.0, 50.0]).fixed_size(size).show(ctx, |ui| {
-            egui::ScrollArea::both().auto_shrink(false).show(ui, |ui| {
+        let shown = window.constrain_to(room).default_pos([40.0, 40.0]).show(ctx, |ui| {
+            egui::ScrollArea::both().max_width(size.x).max_height(size.y).show(ui, |ui| {
                 ui.horizontal_top(|ui| {
                     let mouse = text::help::MOUSE;
                     table(ui, "mouse", mouse.map(|(what, effect)| (what.to_owned(), effect.to_owned())));

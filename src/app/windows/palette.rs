@@ -9,6 +9,9 @@ use crate::model::SceneAxis;
 /// Lines that are shown at once.
 const LINES: usize = 12;
 
+/// Letters from which on a word is also sought within others, as light in spotlight: one or two stand in most words.
+const WITHIN: usize = 3;
+
 /// The window with the search field.
 #[derive(Debug, Default)]
 pub(crate) struct Palette {
@@ -65,19 +68,35 @@ impl Palette {
     }
 }
 
-/// Commands whose names, or what else they are found by, hold all the words of a text; those that begin with it first.
+/// Commands whose names, or what else they are found by, hold all the words of a text: first those that begin with it, then
+/// those whose names hold all of it.
 fn matching(text: &str, up: SceneAxis) -> Vec<Command> {
     let text = text.to_lowercase();
-    let mut found: Vec<_> = commands::listed()
-        .into_iter()
-        .map(|command| (command.label_with(up).to_lowercase(), command))
-        .filter(|(name, command)| {
-            let is_said = |word| name.contains(word) || command.search_words().contains(word);
-            text.split_whitespace().all(is_said)
-        })
-        .collect();
-    found.sort_by_key(|(name, _)| !name.starts_with(&text));
+    let wanted: Vec<&str> = words(&text).collect();
+    let beginning = wanted.join(" ");
+    let ranked = |command: Command| {
+        let label = command.label_with(up).to_lowercase();
+        let name: Vec<&str> = words(&label).collect();
+        let others: Vec<&str> = words(command.search_words()).collect();
+        let is_found = wanted.iter().all(|word| is_said(word, &name) || is_said(word, &others));
+        let is_named = wanted.iter().all(|word| is_said(word, &name));
+        let begins = name.join(" ").starts_with(&beginning);
+        is_found.then_some(((!begins, !is_named), command))
+    };
+    let mut found: Vec<_> = commands::listed().into_iter().filter_map(ranked).collect();
+    found.sort_by_key(|(rank, _)| *rank);
     found.into_iter().map(|(_, command)| command).collect()
+}
+
+/// What stands in a text between characters that are neither letters nor digits.
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty())
+}
+
+/// Whether one of several words begins with another one, or holds it if that is long enough.
+fn is_said(word: &str, among: &[&str]) -> bool {
+    let is_long = word.chars().count() >= WITHIN;
+    among.iter().any(|said| said.starts_with(word) || is_long && said.contains(word))
 }
 
 #[cfg(test)]
@@ -103,13 +122,52 @@ mod tests {
             ("spotlight", "Lights", "Kind"),
             ("stained glass", "Shadows", "Shadow colour"),
             ("window level", "Data", "Range"),
+            ("window/level", "Data", "Range"),
             ("voxel size", "Data", "Spacing"),
+            ("Voxel-Size", "Data", "Spacing"),
+            ("mirror", "Data", "Flip"),
+            ("slope, intercept", "Data", "Values"),
+            ("anisotropy", "Sky and scattering", "Forward"),
+            ("rotate environment", "Sky and scattering", "Turn"),
+            ("shadow catcher", "Floor", "Shadow alone"),
+            ("b-spline", "Camera", "Kernel"),
+            ("step size", "Shadows", "Slab"),
+            ("two-sided", "Shading", "Lit sides"),
+            ("zoom", "Camera", "Distance"),
         ] {
             let found = matching(words, SceneAxis::default());
             let is_it = |command: &Command| matches!(command, Command::Reveal(place) if place.section == section && place.row == Some(row));
             assert!(found.iter().any(is_it), "{words}: {found:?}");
         }
         assert!(matching("screenshot", SceneAxis::default()).contains(&Command::Export));
+    }
+
+    #[test]
+    fn every_command_is_found_by_its_name() {
+        for command in commands::listed() {
+            let name = command.label_with(SceneAxis::default());
+            let found = matching(&name, SceneAxis::default());
+            assert!(found.contains(&command), "{name}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_called_like_that_comes_before_what_is_found_by_other_words() {
+        for word in ["distance", "opacity", "kernel", "density"] {
+            let found = matching(word, SceneAxis::default());
+            let is_called =
+                |command: &Command| command.label_with(SceneAxis::default()).to_lowercase().contains(word);
+            assert!(found.first().is_some_and(is_called), "{word}: {found:?}");
+            assert!(found.is_sorted_by_key(|command| !is_called(command)), "{word}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn one_or_two_letters_begin_words() {
+        let in_sky = matching("sky y", SceneAxis::default());
+        assert!(in_sky.is_empty(), "{in_sky:?}");
+        assert!(!matching("ao", SceneAxis::default()).is_empty());
+        assert!(matching("light", SceneAxis::default()).contains(&Command::Solo));
     }
 
     #[test]

@@ -5,6 +5,7 @@ use std::time::SystemTime;
 
 use eframe::egui::{self, TextureHandle, TextureOptions, vec2};
 
+use crate::app::common::frame;
 use crate::app::memory::EarlierRun;
 use crate::app::text;
 
@@ -56,6 +57,7 @@ impl Recovery {
         let mut open = true;
         let window = egui::Window::new(text::memory::ENDED_BADLY).open(&mut open);
         let window = window.collapsible(false).resizable(false).default_pos([60.0, 70.0]);
+        let window = window.constrain_to(frame::room(ctx));
         window.show(ctx, |ui| {
             ui.label(text::memory::ENDED_BADLY_WHY);
             for offer in &self.offers {

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use eframe::egui::{self, DragValue, Key, Ui};
 
+use crate::app::common::frame;
 use crate::app::text;
 use crate::app::worker::loader::Reading;
 use crate::app::worker::weighing::{Fit, Weighed};
@@ -160,35 +161,40 @@ impl Roomy {
         let asked = self.asked.as_mut()?;
         let (mut open, mut answer) = (true, None);
         let window = egui::Window::new(text::roomy::TITLE).open(&mut open);
-        window.collapsible(false).resizable(false).default_pos([120.0, 80.0]).show(ctx, |ui| {
-            ui.set_max_width(WIDTH);
-            let Weighed { size, room } = &asked.weighed;
-            ui.label(text::roomy::holds(&plain(&asked.source.to_string_lossy(), LONGEST_PATH), size));
-            if let Some([host, adapter]) = asked.weighed.needs(&Portion::default()) {
-                ui.label(text::roomy::memory(host, room.free_bytes()));
-                ui.label(text::roomy::adapter(adapter, (room.held != size.dims).then_some(room.held)));
-            }
-            ui.separator();
-            let every = asked.every.map_or(2, |portion| portion.thinning.step());
-            let average = asked.average.map_or(2, |portion| portion.thinning.step());
-            asked.way(ui, Wish::Average, &text::roomy::average(average), text::roomy::AVERAGE_TIP);
-            asked.way(ui, Wish::Every, &text::roomy::every(every), text::roomy::EVERY_TIP);
-            asked.way(ui, Wish::Region, text::roomy::REGION, text::roomy::REGION_TIP);
-            ui.indent("region", |ui| asked.region(ui));
-            asked.way(ui, Wish::Whole, text::roomy::WHOLE, text::roomy::WHOLE_TIP);
-            ui.separator();
-            ui.horizontal(|ui| {
-                let chosen = asked.answer();
-                let is_open =
-                    ui.add_enabled(chosen.is_some(), egui::Button::new(text::roomy::OPEN)).clicked();
-                if is_open || ui.input(|input| input.key_pressed(Key::Enter)) {
-                    answer = chosen;
+        window
+            .collapsible(false)
+            .resizable(false)
+            .default_pos([120.0, 80.0])
+            .constrain_to(frame::room(ctx))
+            .show(ctx, |ui| {
+                ui.set_max_width(WIDTH);
+                let Weighed { size, room } = &asked.weighed;
+                ui.label(text::roomy::holds(&plain(&asked.source.to_string_lossy(), LONGEST_PATH), size));
+                if let Some([host, adapter]) = asked.weighed.needs(&Portion::default()) {
+                    ui.label(text::roomy::memory(host, room.free_bytes()));
+                    ui.label(text::roomy::adapter(adapter, (room.held != size.dims).then_some(room.held)));
                 }
-                if ui.button(text::roomy::CANCEL).clicked() {
-                    answer = Some(Answer::Cancel);
-                }
+                ui.separator();
+                let every = asked.every.map_or(2, |portion| portion.thinning.step());
+                let average = asked.average.map_or(2, |portion| portion.thinning.step());
+                asked.way(ui, Wish::Average, &text::roomy::average(average), text::roomy::AVERAGE_TIP);
+                asked.way(ui, Wish::Every, &text::roomy::every(every), text::roomy::EVERY_TIP);
+                asked.way(ui, Wish::Region, text::roomy::REGION, text::roomy::REGION_TIP);
+                ui.indent("region", |ui| asked.region(ui));
+                asked.way(ui, Wish::Whole, text::roomy::WHOLE, text::roomy::WHOLE_TIP);
+                ui.separator();
+                ui.horizontal(|ui| {
+                    let chosen = asked.answer();
+                    let is_open =
+                        ui.add_enabled(chosen.is_some(), egui::Button::new(text::roomy::OPEN)).clicked();
+                    if is_open || ui.input(|input| input.key_pressed(Key::Enter)) {
+                        answer = chosen;
+                    }
+                    if ui.button(text::roomy::CANCEL).clicked() {
+                        answer = Some(Answer::Cancel);
+                    }
+                });
             });
-        });
         if ctx.input(|input| input.key_pressed(Key::Escape)) || !open {
             answer = Some(Answer::Cancel);
         }

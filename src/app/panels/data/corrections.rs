@@ -3,6 +3,7 @@
 use eframe::egui::{self, DragValue, Ui};
 
 use super::super::controls::{reset, row, short, spacing as spacing_in_words, unlabelled};
+use crate::app::common::reveal;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text::{self, Named};
 use crate::data::{
@@ -23,7 +24,8 @@ const LIST_WIDTH: f32 = 120.0;
 /// volume is made anew once.
 pub(super) fn show(ui: &mut Ui, settings: &mut Settings, volume: &VolumeFacts) {
     let header = egui::CollapsingHeader::new(text::corrections::TITLE).id_salt("corrections");
-    header.show_unindented(ui, |ui| {
+    let opens = reveal::opens(ui.ctx(), text::sections::DATA, true);
+    header.open(opens.then_some(true)).show_unindented(ui, |ui| {
         let held = ui.scope_id().with("held");
         let known = settings.volume;
         let mut edited = ui.data(|data| data.get_temp(held)).unwrap_or(known);

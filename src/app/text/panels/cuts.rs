@@ -32,9 +32,9 @@ pub(crate) const TOWARDS_EYE: Named = named("Towards the eye", "Across the line 
 /// What becomes of what lies in front of the plane.
 pub(crate) const IN_FRONT: Named = named("In front", EFFECT_TIP);
 
-pub(crate) const REMOVED: &str = "hidden, no shadow";
-pub(crate) const HIDDEN: &str = "hidden, shadow stays";
-pub(crate) const SHADOWLESS: &str = "visible, no shadow";
+pub(crate) const REMOVED: &str = "Hidden, no shadow";
+pub(crate) const HIDDEN: &str = "Hidden, shadow stays";
+pub(crate) const SHADOWLESS: &str = "Visible, no shadow";
 
 /// The extent of the box along an axis, as its reset button names it.
 pub(crate) fn crop(axis: &str) -> String {

@@ -73,9 +73,9 @@ pub(crate) const RIM: Named =
 pub(crate) const ADD_CHIP: Named = named("+", "Add a light");
 
 /// Entries of a chip's menu.
-pub(crate) const MUTE: &str = "Mute";
-pub(crate) const UNMUTE: &str = "Unmute";
-pub(crate) const SOLO: &str = "Solo";
+pub(crate) const MUTE: &str = "Switch off";
+pub(crate) const UNMUTE: &str = "Switch on";
+pub(crate) const SOLO: &str = "Only this light";
 
 /// What a light's shadows cost, in the tip of its chip.
 pub(crate) const NO_SHADOWS: &str = "casts no shadows";

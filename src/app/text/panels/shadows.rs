@@ -87,7 +87,7 @@ pub(crate) const SIXTEEN_BITS: Named = named("16 bits", "Even in the dark, and u
 pub(crate) const EIGHT_BITS: Named =
     named("8 bits", "Half the memory; shows steps where gain lifts dark parts");
 
-pub(crate) const STORAGE: Named = named("Volumes", "A light volume for each light, or one for all");
+pub(crate) const STORAGE: Named = named("Light volumes", "A light volume for each light, or one for all");
 pub(crate) const AUTO: Named = named("Auto", "One for all from five lights on, where nothing shines");
 pub(crate) const PER_LIGHT: Named =
     named("Each", "A volume for each light: highlights, and colours that change at once");

@@ -44,7 +44,7 @@ pub(crate) const USE_CPU: &str = "Use the processor instead";
 /// Why the processor cannot draw instead.
 pub(crate) const NO_CPU_ADAPTER: &str = "no driver draws with the processor";
 /// Why the window cannot start.
-pub(crate) const NO_DEVICE: &str = "the window has no wgpu device";
+pub(crate) const NO_DEVICE: &str = "the window has no graphics device";
 
 /// How much has been said.
 pub(crate) fn count(count: usize) -> String {

@@ -4,7 +4,7 @@
 pub(crate) const KEYS_AND_MOUSE: &str = "Keys and mouse";
 
 /// What the mouse does, in the picture and in the editor.
-pub(crate) const MOUSE: [(&str, &str); 18] = [
+pub(crate) const MOUSE: [(&str, &str); 22] = [
     ("Drag the picture", "orbit"),
     ("Double click on the volume", "turn about what is there"),
     ("Hold L and drag", "turn the selected light"),
@@ -23,6 +23,10 @@ pub(crate) const MOUSE: [(&str, &str); 18] = [
     ("Drag around points, or click with Shift", "select several"),
     ("Drag a point, or arrow keys", "move what is selected"),
     ("Double click, or Delete", "remove it"),
+    ("Draw, then drag", "draw the transfer function by hand"),
+    ("Click with the probe on", "keep what it says; two clicks measure"),
+    ("Drag kept views and looks", "put them in another order"),
+    ("Escape while dragging", "back to where it was"),
 ];
 
 /// The window that says what this is, and the command that shows it.

@@ -28,8 +28,6 @@ struct Drag {
     behind: bool,
     /// From the pointer to the handle.
     grip: Vec2,
-    /// Where the light was, to which Escape takes it back.
-    before: [f64; 3],
 }
 
 /// State of the handles between frames.
@@ -147,8 +145,7 @@ impl LightHandles {
         {
             // Where the button went down: egui reports a drag only some points later.
             let pressed = ui.input(|input| input.pointer.press_origin()).unwrap_or(pointer);
-            let before = settings.lights[light].position;
-            self.drag = Some(Drag { light, behind: handle.behind, grip: handle.position - pressed, before });
+            self.drag = Some(Drag { light, behind: handle.behind, grip: handle.position - pressed });
         }
         if let (Some(drag), Some(pointer)) = (self.drag, pointer)
             && drag.light == light
@@ -159,12 +156,7 @@ impl LightHandles {
             view.move_light(&mut moved, pointer + drag.grip, drag.behind);
             settings.lights[light].set_scene_position(moved.position.into(), &settings.camera);
         }
-        if let Some(Drag { before, .. }) = self.drag.filter(|drag| drag.light == light && !response.dragged())
-        {
-            // The window library ends drags with Escape.
-            if ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Escape)) {
-                settings.lights[light].position = before;
-            }
+        if self.drag.is_some_and(|drag| drag.light == light && !response.dragged()) {
             self.drag = None;
         }
         if (response.hovered() || response.dragged()) && settings.lights[light].kind == LightKind::Perspective

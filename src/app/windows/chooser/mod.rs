@@ -9,6 +9,7 @@ use eframe::egui::{self, Align2, Key, Modifiers, Rect, Sense, TextStyle, Ui, Vec
 use self::previews::{Preview, Previews};
 use crate::app::common::aspect::Alternatives;
 use crate::app::common::commands::Command;
+use crate::app::common::frame;
 use crate::app::common::shortcuts::is_typing;
 use crate::app::common::theme;
 use crate::app::common::volume_facts::VolumeFacts;
@@ -76,23 +77,21 @@ impl Chooser {
         let mut open = !escape;
         let window = egui::Window::new(text::chooser::title(aspect)).id(egui::Id::unique("chooser"));
         let mut visible = 0..0;
-        window.open(&mut open).resizable(false).collapsible(false).default_pos([60.0, 60.0]).show(
-            ctx,
-            |ui| {
-                ui.set_width(WIDTH);
-                if all.has_colors() {
-                    ui.label(text::chooser::NO_COLORS);
-                }
-                visible = self.list(ui, &all, &mut chosen);
-                ui.separator();
-                let mut keeps = self.keeps_look(aspect);
-                let tick = ui.checkbox(&mut keeps, text::chooser::KEEP_LOOK.name);
-                if tick.on_hover_text(text::chooser::KEEP_LOOK.tip).changed() {
-                    self.keeps_look[aspect.index()] = Some(keeps);
-                }
-                ui.weak(text::chooser::KEYS);
-            },
-        );
+        let window = window.constrain_to(frame::room(ctx)).default_pos([60.0, 60.0]);
+        window.open(&mut open).resizable(false).collapsible(false).show(ctx, |ui| {
+            ui.set_width(WIDTH);
+            if all.has_colors() {
+                ui.label(text::chooser::NO_COLORS);
+            }
+            visible = self.list(ui, &all, &mut chosen);
+            ui.separator();
+            let mut keeps = self.keeps_look(aspect);
+            let tick = ui.checkbox(&mut keeps, text::chooser::KEEP_LOOK.name);
+            if tick.on_hover_text(text::chooser::KEEP_LOOK.tip).changed() {
+                self.keeps_look[aspect.index()] = Some(keeps);
+            }
+            ui.weak(text::chooser::KEYS);
+        });
         let wanted: Vec<_> = visible.map(|at| (all.choice(at), all.grid(at))).collect();
         self.previews.look_at(&volume.source, volume.reading.among.as_ref());
         self.previews.make(&wanted, options, ctx);

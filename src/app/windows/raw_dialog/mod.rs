@@ -12,12 +12,16 @@ use eframe::egui::{self, Key, Modifiers};
 use self::form::Form;
 use self::looking::Looking;
 use self::pictures::Pictures;
+use crate::app::common::frame;
 use crate::app::text;
 use crate::data::load::raw::Proposal;
 use crate::data::load::{RawGuess, RawLayout};
 
 /// Width of the numbers and of the proposals, in points.
 const NUMBERS_WIDTH: f32 = 356.0;
+
+/// Height of a window's title and margins.
+const TITLE_HEIGHT: f32 = 46.0;
 
 /// What the user said.
 #[derive(Debug)]
@@ -87,6 +91,9 @@ impl RawDialog {
         let mut open = true;
         let mut answer = None;
         let window = egui::Window::new(text::raw::TITLE).open(&mut open).collapsible(false).resizable(false);
+        // In a small window with a scroll bar, so that its buttons can be reached.
+        let room = frame::room(ctx);
+        let window = window.constrain_to(room).max_height(room.height() - TITLE_HEIGHT).vscroll(true);
         window.default_pos([40.0, 40.0]).show(ctx, |ui| {
             let name = asked.path.file_name().unwrap_or_default().to_string_lossy();
             ui.horizontal(|ui| {
