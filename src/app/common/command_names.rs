@@ -26,6 +26,8 @@ impl Command {
             Self::SaveSettings => text::commands::SAVE_WORDS,
             Self::Export => text::commands::EXPORT_WORDS,
             Self::ImportTransfer => text::commands::TRANSFER_WORDS,
+            Self::Solo => text::commands::SOLO_WORDS,
+            Self::Mute => text::commands::MUTE_WORDS,
             Self::ToggleCompare => text::commands::COMPARE_WORDS,
             Self::TogglePictureOnly => text::commands::PICTURE_ONLY_WORDS,
             Self::Scale(_) => text::commands::SCALE_WORDS,

@@ -8,6 +8,9 @@ use crate::app::text;
 use crate::app::viewport::Facts;
 use crate::model::SceneAxis;
 
+/// Room that keys and mouse take.
+const TABLES: egui::Vec2 = egui::vec2(980.0, 626.0);
+
 /// Two columns: what is done, and what happens.
 fn table(ui: &mut egui::Ui, name: &str, rows: impl IntoIterator<Item = (String, String)>) {
     egui::Grid::new(name).num_columns(2).striped(true).spacing([16.0, 4.0]).show(ui, |ui| {
@@ -33,13 +36,14 @@ impl Help {
     pub(crate) fn ui(&mut self, ctx: &egui::Context, facts: &Facts, up: SceneAxis) {
         // All of it where the window has room, else with scroll bars.
         let room = frame::room(ctx);
-        let size = room.size() - egui::vec2(40.0, 60.0);
+        let size = TABLES.min(room.size() - egui::vec2(80.0, 60.0));
         let window = egui::Window::new(text::help::KEYS_AND_MOUSE)
             .open(&mut self.keys)
             .resizable(false)
             .collapsible(false);
-        let shown = window.constrain_to(room).default_pos([40.0, 40.0]).show(ctx, |ui| {
-            egui::ScrollArea::both().max_width(size.x).max_height(size.y).show(ui, |ui| {
+        let window = window.constrain_to(room).default_pos([40.0, 40.0]);
+        let shown = window.fixed_size(size).show(ctx, |ui| {
+            egui::ScrollArea::both().auto_shrink(false).show(ui, |ui| {
                 ui.horizontal_top(|ui| {
                     let mouse = text::help::MOUSE;
                     table(ui, "mouse", mouse.map(|(what, effect)| (what.to_owned(), effect.to_owned())));

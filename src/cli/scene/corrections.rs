@@ -23,8 +23,28 @@ pub(super) fn laid_over(before: Corrections, set: &[String]) -> Result<Correctio
         let Some((path, value)) = assignment.split_once('=') else { continue };
         (settings, _) = assign(&settings, path.trim(), value.trim())
             .map_err(|err| CliError::Usage(format!("--set: {err} (command line, {assignment:?})")))?;
+        if let Some(expected) = impossible(path.trim(), value.trim(), &settings.volume) {
+            return Err(CliError::Usage(format!(
+                "--set: expected {expected}, found {:?} (command line, {assignment:?})",
+                value.trim()
+            )));
+        }
     }
     Ok(settings.volume)
+}
+
+/// What was expected in place of a value that cannot be: of those that a session brings the file's own are taken, and
+/// whoever types one is told.
+fn impossible(path: &str, value: &str, taken: &Corrections) -> Option<&'static str> {
+    let is_another = |taken: f64| value.parse::<f64>().is_ok_and(|number| number != taken);
+    match path {
+        "volume.spacing" if taken.spacing.is_none() && value != "null" => {
+            Some("three distances above 0 that are not too unlike, as 0.5,0.5,2")
+        }
+        "volume.value_scale.slope" if is_another(taken.value_scale.slope) => Some("a factor other than 0"),
+        "volume.value_scale.intercept" if is_another(taken.value_scale.intercept) => Some("a finite number"),
+        _ => None,
+    }
 }
 
 /// A volume that was opened, with corrections from the command line alone: nothing else can be set.

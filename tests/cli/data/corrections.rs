@@ -49,6 +49,16 @@ fn a_corrected_volume_makes_the_picture_of_a_file_that_says_so() {
 }
 
 #[test]
+fn corrections_that_cannot_be_are_refused() {
+    let folder = Folder::new();
+    for wrong in ["spacing=-1,0,2", "spacing=1e12,1,1", "value_scale.slope=0", "value_scale.slope=nan"] {
+        let said = folder.fail(&format!("info builtin:chair:8 --set volume.{wrong}"), 2);
+        assert!(said.contains("expected"), "{said}");
+    }
+    folder.succeed("info builtin:chair:8 --set volume.spacing=1,2,3 --set volume.value_scale.slope=2");
+}
+
+#[test]
 fn info_says_what_is_corrected() {
     let folder = Folder::new();
     folder.write("a_8x8x8_uint8.raw", small_ball());

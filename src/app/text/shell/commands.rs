@@ -70,6 +70,8 @@ pub(crate) const GO_ON_WORDS: &str = "go on where you left off continue resume r
 pub(crate) const SAVE_WORDS: &str = "save settings";
 pub(crate) const EXPORT_WORDS: &str = "screenshot save picture image figure render turntable video movie";
 pub(crate) const TRANSFER_WORDS: &str = "load colormap colour map lut tf";
+pub(crate) const SOLO_WORDS: &str = "solo alone others off";
+pub(crate) const MUTE_WORDS: &str = "mute switch disable enable";
 pub(crate) const COMPARE_WORDS: &str = "before after split side by side difference";
 
 /// Where something is set.
@@ -86,8 +88,8 @@ pub(crate) const USE_SURROUNDINGS: &str = "Light by surroundings in a picture…
 pub(crate) const TRY_LIGHTS: &str = "Try lights…";
 pub(crate) const NEXT_LIGHT: &str = "Next light";
 pub(crate) const PREVIOUS_LIGHT: &str = "Previous light";
-pub(crate) const SOLO: &str = "Only the selected light (solo)";
-pub(crate) const MUTE: &str = "Switch the selected light off or on (mute)";
+pub(crate) const SOLO: &str = "Only the selected light";
+pub(crate) const MUTE: &str = "Selected light off or on";
 pub(crate) const BRIGHTER: &str = "Brighter light";
 pub(crate) const DIMMER: &str = "Dimmer light";
 pub(crate) const BALANCE: &str = "Balance brightness";

@@ -20,6 +20,9 @@ use crate::data::load::{RawGuess, RawLayout};
 /// Width of the numbers and of the proposals, in points.
 const NUMBERS_WIDTH: f32 = 356.0;
 
+/// Height of all of it.
+const HEIGHT: f32 = 640.0;
+
 /// Height of a window's title and margins.
 const TITLE_HEIGHT: f32 = 46.0;
 
@@ -93,7 +96,9 @@ impl RawDialog {
         let window = egui::Window::new(text::raw::TITLE).open(&mut open).collapsible(false).resizable(false);
         // In a small window with a scroll bar, so that its buttons can be reached.
         let room = frame::room(ctx);
-        let window = window.constrain_to(room).max_height(room.height() - TITLE_HEIGHT).vscroll(true);
+        let is_narrow = room.height() < HEIGHT;
+        let window = window.constrain_to(room).vscroll(is_narrow);
+        let window = if is_narrow { window.max_height(room.height() - TITLE_HEIGHT) } else { window };
         window.default_pos([40.0, 40.0]).show(ctx, |ui| {
             let name = asked.path.file_name().unwrap_or_default().to_string_lossy();
             ui.horizontal(|ui| {

@@ -10,6 +10,7 @@ use super::header::plane::Plane;
 use super::pixels::shape::Shape;
 use super::pixels::store::check_room;
 use crate::data::attempt::{Attempt, Offer};
+use crate::data::plain;
 
 /// Pictures whose places differ by less in every cosine lie in parallel.
 const PARALLEL: f64 = 1e-3;
@@ -37,20 +38,21 @@ pub(super) struct Group {
     pub(super) slices: Vec<Slice>,
 }
 
-/// Puts the pictures of all files together, the series by their numbers.
+/// Puts the pictures of all files together, the series by their numbers; and says what was left out.
 ///
 /// # Errors
 /// What is wrong with the pixels of the first file, if there is something wrong with those of all.
-pub(super) fn groups(headers: &[Header]) -> Result<Vec<Group>, LoadError> {
+pub(super) fn groups(headers: &[Header]) -> Result<(Vec<Group>, Option<String>), LoadError> {
     // A file of many frames is a volume by itself.
     let own = |file: usize| (headers[file].frame_count() > 1).then_some(file);
     let mut of_series: BTreeMap<(i64, &str, Option<usize>, Shape), Vec<Group>> = BTreeMap::new();
-    let mut wrong = None;
+    let (mut wrong, mut count_of_wrong) = (None, 0);
     for (file, header) in headers.iter().enumerate() {
         let shape = match shape_of(header) {
             Ok(shape) => shape,
             Err(error) => {
                 wrong = wrong.or(Some(error));
+                count_of_wrong += 1;
                 continue;
             }
         };
@@ -71,8 +73,15 @@ pub(super) fn groups(headers: &[Header]) -> Result<Vec<Group>, LoadError> {
     let all: Vec<Group> = of_series.into_values().flatten().collect();
     match wrong {
         Some(error) if all.is_empty() => Err(error),
-        _ => Ok(all),
+        wrong => Ok((all, wrong.map(|error| left_out(count_of_wrong, &error)))),
     }
+}
+
+/// Says how many files are left out, and why the first of them.
+pub(super) fn left_out(count: usize, why: &LoadError) -> String {
+    let files =
+        if count == 1 { "a file is left out".to_owned() } else { format!("{count} files are left out") };
+    format!("{files}: {}", plain(&why.to_string(), 400))
 }
 
 /// How the pixels of a file are stored, if it has room for them.

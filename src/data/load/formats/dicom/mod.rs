@@ -21,7 +21,7 @@ use super::reader::{Reader, Source, Start};
 use super::{LoadControl, LoadError, LoadOptions};
 use crate::data::attempt::{Attempt, Dimension, Offer, quoted};
 use crate::data::{Volume, plain};
-use groups::{Group, groups, shape_of};
+use groups::{Group, groups, left_out, shape_of};
 use header::{Header, is_dicom};
 use scan::{Scan, beside, scan};
 use stack::Stack;
@@ -64,15 +64,17 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
         return Err(without_pixels(attempt, &header));
     }
     let is_slice = header.frame_count() == 1 && !header.found.series.is_empty();
-    let mut headers = vec![header];
+    let (mut headers, mut unreadable) = (vec![header], None);
     if is_slice {
-        let others = scan(&beside(path), control)?.headers;
+        let Scan { headers: others, broken, why, .. } = scan(&beside(path), control)?;
+        unreadable = why.map(|why| left_out(broken, &why));
         let series = headers[0].found.series.clone();
         let is_another = |other: &Header| other.found.series == series && other.frame_count() == 1;
         headers.extend(others.into_iter().filter(is_another));
     }
     let mut remarks = drop_copies(&mut headers);
-    let mut found = groups(&headers)?;
+    remarks.extend(unreadable);
+    let (mut found, wrong) = groups(&headers)?;
     let of_file = |group: &Group| group.slices.iter().any(|slice| slice.file == 0);
     if is_slice {
         // The file itself says what is meant.
@@ -86,6 +88,7 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
             remarks.push(format!("{} pictures of the series have another size or direction", all - count));
         }
     }
+    remarks.extend(wrong);
     if found.is_empty() {
         // Others of its series are well, it is not.
         return Err(shape_of(&headers[0]).err().unwrap_or_else(|| without_pixels(attempt, &headers[0])));
@@ -117,10 +120,9 @@ pub(super) fn load_folder(
         };
     }
     let mut remarks = drop_copies(&mut headers);
-    if broken > 0 {
-        remarks.push(format!("{broken} files of the folder cannot be read: they are left out"));
-    }
-    let mut found = groups(&headers)?;
+    remarks.extend(why.map(|why| left_out(broken, &why)));
+    let (mut found, wrong) = groups(&headers)?;
+    remarks.extend(wrong);
     let chosen = choose(attempt, &found, &headers, options)?;
     let group = found.swap_remove(chosen);
     let name = name(&headers, &group, path);

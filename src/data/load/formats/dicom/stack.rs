@@ -99,6 +99,11 @@ impl Stack {
             (Some([between_rows, between_columns]), Some(depth)) => {
                 Placement::spaced([between_columns, between_rows, depth])
             }
+            (Some([between_rows, between_columns]), None) => {
+                let remark =
+                    "the file does not say how far its pictures lie apart: as far as rows of pixels is taken";
+                Placement::spaced([between_columns, between_rows, between_rows]).remarked(Some(remark))
+            }
             _ => Placement::unknown(),
         };
         if count > 1 && !placement.is_scale_known {
@@ -170,8 +175,13 @@ fn placed(lowest: &Plane, across: Option<DVec3>) -> Placement {
     else {
         return Placement::unknown();
     };
-    let axes = DMat3::from_cols(along_row * between_columns, along_column * between_rows, across);
-    Placement::lps(DAffine3 { matrix3: axes, translation: origin })
+    // Pictures are not mirrored by a sign that cannot be.
+    let remark = (between_rows < 0.0 || between_columns < 0.0).then(|| {
+        format!("distances of {between_columns} x {between_rows} mm between pixels cannot be: they are taken without signs")
+    });
+    let along_row = along_row * between_columns.abs();
+    let axes = DMat3::from_cols(along_row, along_column * between_rows.abs(), across);
+    Placement::lps(DAffine3 { matrix3: axes, translation: origin }).remarked(remark)
 }
 
 /// How far slices lie apart whose positions do not tell.

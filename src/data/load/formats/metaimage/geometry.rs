@@ -19,10 +19,12 @@ pub(super) fn placement(attempt: Attempt<'_>, header: &Header, grid: &Grid) -> R
     let is_of_a_body = header.get("AnatomicalOrientation") != Some("???");
     let mm = header.get("DistanceUnits").and_then(mm_of).unwrap_or(1.0);
 
-    let Some(spacing) = spacing else {
-        // How large voxels are is not known, and with that not where they are.
+    // Without distances the file may still say how its axes lie.
+    let is_scale_known = is_scale_known && spacing.is_some();
+    if spacing.is_none() && matrix.is_none() {
         return Ok(Placement::unknown());
-    };
+    }
+    let spacing = spacing.unwrap_or_else(|| vec![1.0; count]);
     let length = |axis: usize| spacing.get(axis).or(spacing.get(1)).map_or(1.0, |length| length * mm);
     let mut spaced = Placement::spaced([length(0), length(1), length(2)]);
     spaced.is_scale_known = is_scale_known;
@@ -33,6 +35,11 @@ pub(super) fn placement(attempt: Attempt<'_>, header: &Header, grid: &Grid) -> R
         return Ok(spaced);
     };
     let origin = origin.map_or(DVec3::ZERO, |origin| DVec3::new(origin[0], origin[1], origin[2]) * mm);
+    if directions.determinant() == 0.0 {
+        return Ok(
+            spaced.remarked(Some("the file's axes are unusable: they are taken for those of the grid"))
+        );
+    }
     // What could not be a distance is mended already.
     let matrix3 = directions * spaced.world_from_index.matrix3;
     let mut placed = Placement::lps(DAffine3 { matrix3, translation: origin });

@@ -16,6 +16,7 @@ mod tests;
 
 use super::beside;
 use super::input::stem;
+use super::label_files;
 use super::number::{Number, Part, Stored};
 use super::placement::Parts;
 use super::reader::{Reader, Source};
@@ -47,7 +48,7 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     let header = Header::read(attempt, &mut input.reader)?;
     let storage = Storage::from_header(attempt, &header)?;
     let mut geometry = Geometry::from_header(attempt, &header)?;
-    let hints = header.hints();
+    let mut hints = header.hints();
     let is_layered = hints.meaning == Meaning::Labels && geometry.components > 1;
     let (frame, part) = chosen(attempt, &geometry, storage.number, is_layered, options)?;
     // Numbers in text are made little-endian, and those of one byte need no order.
@@ -78,6 +79,9 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
         None => fault.into_error(attempt, &layout, "bytes", HELP),
     })?;
 
+    if hints.labels.is_empty() && geometry.components == 1 && geometry.frames == 1 {
+        label_files::add(attempt, READER.endings, voxels.in_file(), &mut hints);
+    }
     let placement = &mut geometry.placement;
     if is_layered {
         let layers = geometry.components;

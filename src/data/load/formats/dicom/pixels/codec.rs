@@ -65,7 +65,7 @@ fn jpeg(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
     let mut decoder = Decoder::new(packed);
     decoder.read_info().map_err(|error| match error {
         jpeg_decoder::Error::Unsupported(jpeg_decoder::UnsupportedFeature::SamplePrecision(bits)) => {
-            format!("JPEG of {bits} bits with loss is not read")
+            format!("JPEG of {bits} bits with loss (JPEG Extended, 1.2.840.10008.1.2.4.51) is not read")
         }
         error => broken(error),
     })?;
@@ -171,7 +171,7 @@ fn jpeg_2000(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
     if size.numbers.len() != shape.samples || size.tiles > MOST_TILES {
         return Err(broken(format_args!("{} numbers a pixel, {} tiles", size.numbers.len(), size.tiles)));
     }
-    let settings = DecodeSettings { resolve_palette_indices: false, strict: false, target_resolution: None };
+    let settings = DecodeSettings { resolve_palette_indices: false, strict: true, target_resolution: None };
     let image = Image::new(stream, &settings).map_err(broken)?;
     check_size([image.width().into(), image.height().into()], &shape)?;
     let mut context = DecoderContext::default();

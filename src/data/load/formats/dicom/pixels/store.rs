@@ -243,6 +243,30 @@ impl Store {
     }
 }
 
+impl Codec {
+    /// How many bytes of pixels can be in so many bytes of a file. Decoders take time and memory for all of them, whatever
+    /// there is.
+    fn most(self, packed: u64, frames: u64, shape: &Shape) -> u64 {
+        let of_number = shape.bytes() as u64;
+        match self {
+            Self::Native => u64::MAX,
+            // A byte is repeated 128 times by two (PS3.5, G.3.1).
+            Self::Rle => packed.saturating_mul(64),
+            // A bit for each block of 8 x 8 numbers, of which some stand for four.
+            Self::Jpeg => packed.saturating_mul(8 * 64 * 2 * of_number),
+            // Runs and empty packets know no limit; pictures of one grey are a few hundred bytes.
+            Self::JpegLs | Self::Jpeg2000 => {
+                let with_empty = packed.saturating_add(frames.saturating_mul(MOST_EMPTY));
+                with_empty.saturating_mul(MOST_EMPTY * of_number)
+            }
+        }
+    }
+}
+
+/// Bytes that are added to those of a picture of which hardly any are needed; and numbers that one of them can stand for:
+/// 4096² of one grey fit in none.
+const MOST_EMPTY: u64 = 4096;
+
 /// Deflate makes at most so many bytes of one.
 const MOST_DEFLATED: u64 = 1032;
 
@@ -254,14 +278,25 @@ pub(in crate::data::load::formats::dicom) fn check_room(
 ) -> Result<(), LoadError> {
     let Some(pixels) = header.pixels else { return Ok(()) };
     let count = header.frame_count();
+    let left = header.len.saturating_sub(pixels.offset);
+    let is_roomy =
+        |codec: Codec| shape.bytes_of_frame().saturating_mul(count) <= codec.most(left, count, shape);
     match pixels.length {
         // A fragment begins with 8 bytes.
-        None if count <= header.len.saturating_sub(pixels.offset) / 8 => Ok(()),
-        None => Err(attempt.bad_input(
+        None if count > left / 8 => Err(attempt.bad_input(
             "Number of Frames",
             format!("the file has no room for the {count} frames that it announces"),
             HELP_COPY,
         )),
+        None if header.syntax.codec.as_ref().is_ok_and(|codec| !is_roomy(*codec)) => {
+            let Shape { columns, rows, .. } = shape;
+            let found = format!(
+                "the data are truncated: {count} frames of {columns} x {rows} pixels do not fit in {left} \
+                 compressed bytes"
+            );
+            Err(attempt.bad_input("Pixel Data", found, HELP_COPY))
+        }
+        None => Ok(()),
         Some(length) => {
             let expected = shape.bytes_of_frame().max(1).checked_mul(count);
             let most =

@@ -142,6 +142,24 @@ fn pictures_that_are_not_what_the_header_says_are_refused() {
     assert_refused(twelve.load(), LoadErrorKind::BadInput, &["12 bits with loss", "gdcmconv --raw"]);
 }
 
+/// Decoders take time and memory for as many pixels as are announced, whatever there is.
+#[test]
+fn bombs_are_refused_before_there_is_room_for_them() {
+    for syntax in [JPEG_LOSSLESS, JPEG_BASELINE, JPEG_LS, JPEG_2000, RLE] {
+        let huge = file(syntax, false, &[&[], &[0; 2048]]).size(20000, 20000);
+        assert_refused(huge.load(), LoadErrorKind::BadInput, &["20000 x 20000 pixels do not fit in"]);
+    }
+}
+
+#[test]
+fn half_a_picture_is_none() {
+    for (syntax, picture) in [(JPEG_LOSSLESS, LOSSLESS), (JPEG_LS, LS), (JPEG_2000, SIGNED)] {
+        let picture = hex(picture);
+        let half = file(syntax, true, &[&[], &picture[..picture.len() / 4 * 3 & !1]]);
+        assert_refused(half.load(), LoadErrorKind::BadInput, &["Pixel Data, frame 0"]);
+    }
+}
+
 #[test]
 fn cut_pictures_never_harm() {
     for (syntax, picture) in

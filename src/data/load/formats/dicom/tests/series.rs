@@ -135,8 +135,21 @@ fn files_that_are_no_slices_do_not_disturb() {
     std::fs::write(at.path().join("broken"), &broken[..165]).unwrap();
     let volume = load_path(at.path(), Choice::default()).unwrap();
     assert_eq!(volume.samples(), &Samples::U16(vec![1, 2]));
-    assert_remark(&volume, "1 files of the folder cannot be read");
+    assert_remark(&volume, "a file is left out: cannot read the DICOM file");
     assert_refused(load_all(&[report]), LoadErrorKind::BadInput, &["1 DICOM files have no pixels"]);
+}
+
+/// A slice whose pixels are cut off is missing from the volume, and not in silence.
+#[test]
+fn what_is_left_out_is_said() {
+    let cut = slice("2", 3, "3").size(2, 2);
+    let at = folder(&[slice("0", 1, "1"), slice("1", 2, "2"), cut]);
+    for path in [at.path().to_owned(), at.path().join("0")] {
+        let volume = load_path(&path, Choice::default()).unwrap();
+        assert_eq!(volume.samples(), &Samples::U16(vec![1, 2]));
+        assert_remark(&volume, "a file is left out");
+        assert_remark(&volume, "truncated");
+    }
 }
 
 #[test]

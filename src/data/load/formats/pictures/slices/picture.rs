@@ -133,6 +133,30 @@ fn most_of_bmp(length: u64, first: &[u8]) -> u64 {
     }
 }
 
+/// Whether a JPEG comes to its end, for which its decoder does not ask: a marker behind the first one that begins a scan
+/// (ITU-T T.81, B.1.1.3 and B.2.1). In the data of a scan no marker is like it.
+fn has_end(input: &mut Input) -> io::Result<bool> {
+    let mut bytes = Vec::new();
+    input.seek(0)?;
+    input.reader.read_to_end(&mut bytes)?;
+    input.seek(0)?;
+    let mut at = 2;
+    while let Some(&[0xFF, marker, high, low]) = bytes.get(at..).and_then(<[u8]>::first_chunk) {
+        at += match marker {
+            // Filled up.
+            0xFF => 1,
+            // Without a length.
+            0x01 | 0xD0..=0xD7 => 2,
+            _ => 2 + usize::from(u16::from_be_bytes([high, low])),
+        };
+        if marker == 0xDA {
+            return Ok(bytes.get(at..).is_some_and(|data| data.windows(2).any(|two| two == [0xFF, 0xD9])));
+        }
+    }
+    // Its decoder knows more of what is none.
+    Ok(true)
+}
+
 fn look_at_image(
     attempt: Attempt<'_>,
     format: ImageFormat,
@@ -170,6 +194,9 @@ fn look_at_image(
         }
         error => attempt.bad_input("data", plain(&format!("the picture is broken: {error}"), 200), HELP),
     };
+    if is_decoded && format == ImageFormat::Jpeg && !has_end(&mut input).map_err(|error| attempt.io(error))? {
+        return Err(attempt.bad_input("data", "the picture is truncated: it has no end", HELP));
+    }
     let (length, most_pixels) = (input.len, most_pixels(format, input.len, &first_bytes));
     let mut reader: ImageReader<BufReader<_>> = ImageReader::with_format(input.reader, format);
     let mut limits = Limits::no_limits();

@@ -154,6 +154,14 @@ fn broken_and_huge_pictures_are_refused() {
     std::fs::write(&path, &huge).unwrap();
     let error = load_path(&path).unwrap_err();
     assert!(matches!(error.kind(), LoadErrorKind::Limit | LoadErrorKind::BadInput), "{error}");
+    // Half of a picture with loss, in which decoders fill what is missing with grey.
+    let values: Vec<u8> = (0..64 * 64).map(|at| (at * 37 % 251) as u8).collect();
+    let lossy = folder(&[("a.jpg", grey(64, &values))]);
+    let path = lossy.path().join("a.jpg");
+    let whole = std::fs::read(&path).unwrap();
+    assert!(load_path(&path).is_ok());
+    std::fs::write(&path, &whole[..whole.len() / 2]).unwrap();
+    assert_refused(load_path(&path), LoadErrorKind::BadInput, &["a.jpg", "it has no end"]);
     let large = folder(&[("a.png", grey(300, &vec![0; 300 * 300]))]);
     assert_refused(load_path(&large.path().join("a.png")), LoadErrorKind::Limit, &["allowed"]);
 }
