@@ -23,7 +23,7 @@ pub(crate) const HANDLE_RADIUS: f32 = 8.0;
 /// How far from the border of the picture a handle stays …
 pub(crate) const HANDLE_INSET: f32 = 14.0;
 /// … and that of a light, which may have an arrow to where the light is outside.
-pub(crate) const LIGHT_INSET: f32 = 18.0;
+pub(crate) const LIGHT_INSET: f32 = 22.0;
 /// Radius of a control point of a transfer function.
 pub(crate) const POINT_RADIUS: f32 = 5.0;
 /// Seconds that handles take to appear and to go.

@@ -117,7 +117,9 @@ impl LightHandles {
             }
             paint_handle(&painter, handle.position, radius, color, handle.behind);
             if let Some(direction) = handle.outside {
-                paint_arrow(&painter, handle.position + direction * radius, direction, color);
+                // Beyond the ring of the selected light.
+                let from = radius + if *selected == light { 4.5 } else { 0.0 };
+                paint_arrow(&painter, handle.position + direction * from, direction, color);
             }
             if response.hovered() {
                 ui.ctx().set_cursor_icon(egui::CursorIcon::Grab);

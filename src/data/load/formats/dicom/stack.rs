@@ -99,10 +99,9 @@ impl Stack {
             (Some([between_rows, between_columns]), Some(depth)) => {
                 Placement::spaced([between_columns, between_rows, depth])
             }
+            // How pixels compare is known.
             (Some([between_rows, between_columns]), None) => {
-                let remark =
-                    "the file does not say how far its pictures lie apart: as far as rows of pixels is taken";
-                Placement::spaced([between_columns, between_rows, between_rows]).remarked(Some(remark))
+                Placement::spaced([between_columns, between_rows, between_rows]).of_unknown_scale()
             }
             _ => Placement::unknown(),
         };

@@ -68,12 +68,12 @@ impl Grid {
         }
         let shift = |axis: usize| if of_cells && self.points[axis] > 1 { 0.5 } else { 0.0 };
         let first = DVec3::from_array([0, 1, 2].map(|axis| self.first[axis] + shift(axis)));
-        // Nothing is mirrored by a sign that cannot be.
+        // As VTK has it; other programs mean nothing by a sign.
         let remark = self.spacing.cmplt(DVec3::ZERO).any().then(|| {
             let [x, y, z] = self.spacing.to_array();
-            format!("distances of {x} x {y} x {z} between points cannot be: they are taken without signs")
+            format!("distances of {x} x {y} x {z} between points: axes with one below 0 run backwards")
         });
-        let axes = self.direction * DMat3::from_diagonal(self.spacing.abs());
+        let axes = self.direction * DMat3::from_diagonal(self.spacing);
         let affine = DAffine3 { matrix3: axes, translation: self.origin + axes * first };
         Placement::ras(affine).of_no_body().remarked(remark)
     }

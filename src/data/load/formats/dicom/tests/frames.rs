@@ -75,6 +75,7 @@ fn frames_without_places_are_stacked_and_that_is_said() {
     assert_eq!(volume.samples(), &Samples::U16(vec![1, 2, 3]));
     assert!(volume.has_unknown_scale());
     assert_remark(&volume, "stacked in their order");
+    assert_eq!(volume.spacing_mm(), glam::DVec3::new(0.25, 0.5, 0.5), "pixels keep their shape");
     let volume = film(&[1, 2, 3]).with(|set| set.decimal(tags::SPACING_BETWEEN, "-4")).load().unwrap();
     assert_eq!(place(&volume)[6..], [0.0, 0.0, -4.0, -1.0, -2.0, 3.0]);
     assert!(volume.remarks().is_empty(), "{:?}", volume.remarks());

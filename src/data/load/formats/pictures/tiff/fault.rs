@@ -15,6 +15,10 @@ pub(super) fn unreadable(attempt: Attempt<'_>, field: &str, error: io::Error) ->
             attempt.bad_input(field, "the file is truncated: it points to bytes beyond its end", HELP)
         }
         io::ErrorKind::InvalidData => attempt.bad_input(field, "it holds what cannot be there", HELP),
+        io::ErrorKind::Unsupported => {
+            let why = "its pages have a depth (ImageDepth), of which only the first layer would be read";
+            attempt.bad_input(field, why, "save it anew with a page for each slice")
+        }
         _ => attempt.io(error),
     }
 }

@@ -76,7 +76,9 @@ fn the_grid_lies_where_the_file_says() {
         format!("{HEAD}{TEXT}").replace("SPACING", "ASPECT_RATIO").replace("LOOKUP_TABLE default\n", "");
     assert_eq!(load_bytes(old.as_bytes()).unwrap().spacing_mm(), DVec3::new(0.5, 1.0, 2.0));
     let mirrored = format!("{HEAD}{TEXT}").replace("SPACING 0.5 1 2", "SPACING 0.5 -1 2");
-    assert_eq!(load_bytes(mirrored.as_bytes()).unwrap().world_from_index().matrix3.y_axis.y, 1.0);
+    let mirrored = load_bytes(mirrored.as_bytes()).unwrap();
+    assert_eq!(mirrored.world_from_index().matrix3.y_axis.y, -1.0);
+    assert!(mirrored.remarks()[0].contains("run backwards"), "{:?}", mirrored.remarks());
     let none = format!("{HEAD}{TEXT}").replace("SPACING 0.5 1 2\n", "");
     assert!(load_bytes(none.as_bytes()).unwrap().has_unknown_scale());
     let shifted = format!("{HEAD}{TEXT}").replace("DIMENSIONS 2 2 2", "EXTENT 2 3 0 1 -1 0");

@@ -33,6 +33,8 @@ pub(in super::super) mod tag {
     pub(in super::super::super) const EXTRA_SAMPLES: u16 = 338;
     pub(in super::super::super) const JPEG_TABLES: u16 = 347;
     pub(in super::super::super) const SAMPLE_FORMAT: u16 = 339;
+    /// Layers in a page: an extension of a maker of volumes.
+    pub(in super::super::super) const DEPTH: u16 = 32997;
     /// Of GDAL, in text: the value of what was not measured.
     pub(in super::super::super) const NO_DATA: u16 = 42113;
     /// Of Zeiss' laser scanning microscopes.
@@ -99,7 +101,7 @@ impl Page {
     /// What a directory says.
     ///
     /// # Errors
-    /// `UnexpectedEof` where it points beyond the file, `InvalidData` for what cannot be.
+    /// `UnexpectedEof` where it points beyond the file, `InvalidData` for what cannot be, `Unsupported` for layers.
     pub(in super::super) fn of(file: &mut Bytes, directory: &Directory) -> io::Result<Self> {
         let mut say = |tag, default: Option<u64>| match (directory.get(tag), default) {
             (Some(entry), _) => entry.whole(file),
@@ -107,6 +109,9 @@ impl Page {
             (None, None) => Err(io::ErrorKind::InvalidData.into()),
         };
         let (width, height) = (say(tag::WIDTH, None)?, say(tag::HEIGHT, None)?);
+        if say(tag::DEPTH, Some(1))? > 1 {
+            return Err(io::ErrorKind::Unsupported.into());
+        }
         let (bits, samples) = (say(tag::BITS, Some(1))?, say(tag::SAMPLES, Some(1))?);
         // 1 is "black is zero", what most are; some programs leave it out.
         let photometric = say(tag::PHOTOMETRIC, Some(1))?;

@@ -55,6 +55,7 @@ fn sizes_that_cannot_be_are_refused_before_anything_is_allocated() {
             LoadErrorKind::BadInput,
             "2 strips or tiles are needed",
         ),
+        (leaf().with(tag::DEPTH, SHORT, &[2]), LoadErrorKind::BadInput, "ImageDepth"),
         (leaf().with(tag::ROWS_PER_STRIP, SHORT, &[0]), LoadErrorKind::BadInput, "cannot be there"),
     ] {
         assert_refused(load_bytes(&LITTLE.file(&[leaf])), kind, &[words]);
