@@ -86,14 +86,12 @@ impl App {
             Command::ExportTransfer => self.files.ask(Purpose::ExportTransfer, frame, ctx),
             Command::InvertTransfer => self.settings.transfer.invert(),
             Command::ToggleCrop => {
-                let on = &mut self.settings.cuts.crop.on;
-                *on ^= true;
-                reveal::show_section(ctx, text::sections::CUTS, *on);
+                self.settings.cuts.crop.on ^= true;
+                self.show_section(ctx, text::sections::CUTS, self.settings.cuts.crop.on);
             }
             Command::TogglePlane => {
-                let on = &mut self.settings.cuts.plane.on;
-                *on ^= true;
-                reveal::show_section(ctx, text::sections::CUTS, *on);
+                self.settings.cuts.plane.on ^= true;
+                self.show_section(ctx, text::sections::CUTS, self.settings.cuts.plane.on);
             }
             Command::FacePlane => {
                 let Camera { target, .. } = self.settings.camera;
@@ -101,7 +99,7 @@ impl App {
             }
             Command::ToggleFloor => {
                 self.settings.floor.on ^= true;
-                reveal::show_section(ctx, text::sections::FLOOR, self.settings.floor.on);
+                self.show_section(ctx, text::sections::FLOOR, self.settings.floor.on);
             }
             Command::Balance => self.start_balance(ctx),
             Command::FrameAll => {
@@ -194,7 +192,7 @@ impl App {
             Command::ToggleHandles => self.handles.hidden ^= true,
             Command::ToggleCompare => {
                 self.compare.on ^= true;
-                reveal::show_section(ctx, text::sections::COMPARE, self.compare.on);
+                self.show_section(ctx, text::sections::COMPARE, self.compare.on);
             }
             Command::Reveal(place) => {
                 let is_of_editor = place.section == text::transfer::TITLE;
@@ -209,6 +207,12 @@ impl App {
             Command::ShowAbout => self.help.about = true,
         }
         ctx.request_repaint();
+    }
+
+    /// Opens the section of what was switched on, and the panel with it; not where the picture is to be alone.
+    fn show_section(&mut self, ctx: &egui::Context, section: &'static str, is_on: bool) {
+        self.layout.side |= is_on && !self.layout.picture_only;
+        reveal::show_section(ctx, section, is_on);
     }
 
     /// Takes in what threads have finished.

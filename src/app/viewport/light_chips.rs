@@ -53,9 +53,10 @@ pub(crate) fn show(
             solo(&mut settings.lights, at);
         }
         if settings.lights.len() < MAX_LIGHTS {
-            let plus = egui::RichText::new(text::lights::ADD_CHIP.name).color(theme::EYE_CURVE);
+            let plus = egui::RichText::new(text::lights::ADD_CHIP).color(theme::EYE_CURVE);
             let add = ui.add(egui::Button::new(plus).small().fill(fill(false)));
-            if add.on_hover_text(text::lights::ADD_CHIP.tip).clicked() {
+            let cost = facts.light_cost().map(|cost| text::shadows::cost(cost.ms, cost.mebibytes));
+            if add.on_hover_text(text::lights::add_tip(cost.as_deref())).clicked() {
                 commands.push(Command::AddLight);
             }
         }

@@ -16,6 +16,22 @@ fn settings(harness: &Harness<'_, App>) -> Settings {
     harness.state().settings().clone()
 }
 
+/// What a key switches on is set in a section: also when the panel is hidden.
+#[test]
+fn the_panel_comes_with_what_a_key_switches_on() {
+    let mut harness = window();
+    harness.key_press(Key::N);
+    harness.run_steps(4);
+    assert!(harness.query_by_label("Crop box").is_none());
+    harness.key_press(Key::K);
+    harness.run_steps(8);
+    assert!(harness.query_by_label("Crop box").is_some());
+    harness.key_press(Key::N);
+    harness.key_press(Key::K);
+    harness.run_steps(8);
+    assert!(harness.query_by_label("Crop box").is_none(), "what is switched off leaves it hidden");
+}
+
 #[test]
 fn the_picture_can_be_alone() {
     let mut harness = window();

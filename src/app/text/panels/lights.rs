@@ -70,7 +70,7 @@ pub(crate) const RIM: Named =
     named("Falloff", "How far inside that the light begins to fade; 0 is a hard edge");
 
 /// The chip that adds a light.
-pub(crate) const ADD_CHIP: Named = named("+", "Add a light");
+pub(crate) const ADD_CHIP: &str = "+";
 
 /// Entries of a chip's menu.
 pub(crate) const MUTE: &str = "Switch off";
