@@ -21,7 +21,8 @@ impl GiveUp {
             (pointer.any_pressed(), pointer.any_down(), pointer.is_decidedly_dragging())
         });
         if pressed {
-            self.before = Some(settings.clone());
+            // Another button during a drag begins no other one.
+            self.before.get_or_insert_with(|| settings.clone());
         } else if !down {
             self.before = None;
         }

@@ -266,3 +266,21 @@ impl Shadows {
         self.slab * scene.smallest_edge()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_volumes_have_as_many_blocks_as_large_ones() {
+        let of = |longest: usize, resolution: Resolution, least| {
+            resolution.with_blocks([longest / 2, longest, 1], least)
+        };
+        assert_eq!(of(128, Resolution::Quarter, 32), Resolution::Quarter);
+        assert_eq!(of(124, Resolution::Quarter, 32), Resolution::Half);
+        assert_eq!(of(24, Resolution::Quarter, 32), Resolution::Full);
+        assert_eq!(of(24, Resolution::Quarter, 1), Resolution::Quarter);
+        assert_eq!(of(512, Resolution::Half, 32), Resolution::Half);
+        assert_eq!(of(512, Resolution::Full, 32), Resolution::Full);
+    }
+}

@@ -138,14 +138,11 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
 
 /// The way from a point to a light.
 fn way(light: &SceneLight, point: DVec3) -> Way {
-    let (towards, distance) = match light.kind {
-        LightKind::Parallel => (light.direction(), f64::INFINITY),
-        LightKind::Perspective => {
-            let away = DVec3::from(light.position) - point;
-            (away.normalize_or(DVec3::Z), away.length())
-        }
+    let distance = match light.kind {
+        LightKind::Parallel => f64::INFINITY,
+        LightKind::Perspective => DVec3::from(light.position).distance(point),
     };
-    Way { point, towards, distance }
+    Way { point, towards: light.towards(point), distance }
 }
 
 #[cfg(test)]
