@@ -140,13 +140,16 @@ fn pyramid_presence(p: vec3f, level: f32) -> f32 {
 #endif
 }
 
-#if MISSING
-// How steeply that rises, in index space: by central differences over as far as the kernel is stretched, made beforehand.
+// How steeply that rises where voxels are missing, in index space: by central differences over as far as the kernel is
+// stretched, made beforehand.
 fn presence_slope(p: vec3f, level: f32) -> vec3f {
+#if MISSING
     let changes = textureSampleLevel(presence_texture, clamped, (p + 4.5) * grid.pyramid_scale, level).gba;
     return changes * (0.5 * exp2(-level));
-}
+#else
+    return vec3f(0.0);
 #endif
+}
 
 // The share of the material of slab k that is there, where the ray crosses it.
 fn slab_presence(frame: SheetFrame, ray: Ray, k: f32) -> f32 {

@@ -84,15 +84,16 @@ fn shaded(ray: Ray, pixel: vec2u, k: i32, found: SlabSample) -> vec3f {
     let depth = depth_of(eye.frame, f32(k));
     let p = ray.origin + ray.direction * depth;
     let level = kernel_level(eye.frame, depth);
+    let rising = presence_slope(p, level);
     if (SHEET_GRADIENTS) {
-        return lit_material(p, level, gradient_between_sheets(vec2f(pixel), f32(k)), found);
+        return lit_material(p, level, gradient_between_sheets(vec2f(pixel), f32(k)), rising, found);
     }
-    return lit_material(p, level, gradient_to_scene(eye.space, slope_at(p, level)), found);
+    return lit_material(p, level, gradient_to_scene(eye.space, slope_at(p, level)), rising, found);
 }
 
-// The light from material where the gradient is `volume_slope` in scene space.
-fn lit_material(p: vec3f, level: f32, volume_slope: vec3f, found: SlabSample) -> vec3f {
-    let slope = volume_slope + face_slope(p, level, found.density);
+// The light from material where the gradient is `volume_slope` in scene space, and presence rises by `rising`.
+fn lit_material(p: vec3f, level: f32, volume_slope: vec3f, rising: vec3f, found: SlabSample) -> vec3f {
+    let slope = volume_slope + face_slope(p, level, found.density, rising);
     return shade(Sampled(p, slope, found.density, level), found.material.rgb);
 }
 

@@ -35,6 +35,8 @@ fn slabs_by_need(ray: Ray, span: vec2f, inside: vec2i) -> Seen {
         let level = kernel_level(eye.frame, depth);
         let found = slab_seen(ray, span, middle, f32(width));
         let slope = volume_slope(p, level);
+        // Asked once: software drivers run both of the branches that need it.
+        let rising = presence_slope(p, level);
         var needed = width;
         if (width == THIN_SLABS) {
             let change = 0.5 * CURVED * thick * abs(dot(slope, ray.direction));
@@ -46,7 +48,7 @@ fn slabs_by_need(ray: Ray, span: vec2f, inside: vec2i) -> Seen {
 #else
             // Where voxels are missing the density goes on beside the others, and little or nothing of it is there.
             if (share > MUCH) {
-                let rise = 0.5 * CURVED * thick * abs(dot(presence_slope(p, level), ray.direction));
+                let rise = 0.5 * CURVED * thick * abs(dot(rising, ray.direction));
                 let there = min(found.there + rise, 1.0);
                 share = t * (1.0 - exp(-there * largest * thick * ray.obliquity));
             }
@@ -60,7 +62,7 @@ fn slabs_by_need(ray: Ray, span: vec2f, inside: vec2i) -> Seen {
         if (needed == width) {
             if (found.material.a > 0.0) {
                 let passed = exp(-found.material.a * f32(width) * eye.frame.slab * ray.obliquity);
-                color += t * (1.0 - passed) * lit_material(p, level, gradient_to_scene(eye.space, slope), found);
+                color += t * (1.0 - passed) * lit_material(p, level, gradient_to_scene(eye.space, slope), rising, found);
                 t *= passed;
             }
             k = start + width;

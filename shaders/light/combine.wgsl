@@ -37,7 +37,8 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     }
     let p = (vec3f(voxel) + 0.5) * combine.voxel_step - 0.5;
     let density = pyramid(p, 0.0);
-    let slope = gradient_to_scene(eye.space, index_gradient(p, level_of_normals(0.0))) + face_slope(p, 0.0, density);
+    let slope = gradient_to_scene(eye.space, index_gradient(p, level_of_normals(0.0)))
+        + face_slope(p, 0.0, density, presence_slope(p, 0.0));
     let found = Sampled(p, slope, density, 0.0);
     textureStore(combined, voxel, vec4f(lit_through_material(surface_of(found)).diffuse, 1.0));
 }

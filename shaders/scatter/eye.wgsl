@@ -121,7 +121,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             } else {
                 slope = gradient_to_scene(eye.space, volume_slope(p, level));
             }
-            slope += face_slope(p, level, density);
+            slope += face_slope(p, level, density, presence_slope(p, level));
             let rgb = shade(Sampled(p, slope, density, level), material.rgb);
             rays[at] = before + left * opacity * vec4f(rgb, 1.0);
         }

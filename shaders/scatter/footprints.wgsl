@@ -95,7 +95,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     atomicAdd(&splats, 1u);
     let stretch = stretch_of(at.z);
-    let slope = gradient_of(vec3i(voxel)) + face_slope(centre, log2(max(stretch, 1.0)), density);
+    let level = log2(max(stretch, 1.0));
+    let slope = gradient_of(vec3i(voxel)) + face_slope(centre, level, density, presence_slope(centre, level));
     let rgb = shade(Sampled(centre, slope, density, 0.0), material.rgb);
     for (var j = box.first.y; j <= box.last.y; j += 1.0) {
         for (var i = box.first.x; i <= box.last.x; i += 1.0) {

@@ -110,8 +110,8 @@ fn side_at(density: f32) -> f32 {
 }
 
 // The gradient, in scene space, that faces of what is seen have of their own, the grid's included: into the solid that
-// ends there, in which opacity rises, as density does or against it.
-fn face_slope(p: vec3f, level: f32, density: f32) -> vec3f {
+// ends there, in which opacity rises, as density does or against it. `rising` is how presence rises there.
+fn face_slope(p: vec3f, level: f32, density: f32, rising: vec3f) -> vec3f {
     let turned = select(1.0, -1.0, ONE_SIDED && side_at(density) < 0.0);
 #if PRECLASSIFY
     // What voxels mean ends with them by itself.
@@ -119,7 +119,7 @@ fn face_slope(p: vec3f, level: f32, density: f32) -> vec3f {
 #else
 #if MISSING
     // Beyond the grid, too, nothing is there.
-    let faces = face_gradient(eye.seen, p, level) + presence_slope(p, level);
+    let faces = face_gradient(eye.seen, p, level) + rising;
 #else
     let faces = face_gradient(eye.faces, p, level);
 #endif
