@@ -1,6 +1,7 @@
 // Where there is material at all: outside the grid is none, whatever the transfer function says. The field goes on
 // there as it is at the border, and its material fades with the share of the kernel that lies on voxels. FACES: anything
 // is shown so near the faces of the grid that its end there could be seen; all else does without, and compiles quicker.
+// FACES > 1: some kernel may be cut by two opposite faces at once, so few voxels lie between them.
 #import "density/kernel.wgsl"
 
 // Edges of the grid, in index space, lie half a voxel beyond its outermost voxels. Kernels reach so far to either side.
@@ -13,10 +14,10 @@ const LEAST_PRESENCE = 1e-4;
 // Along each axis the share of the prefiltered kernel that lies on voxels 0, 1, 2 …, where its middle is `depth` voxels
 // inside the edge before voxel 0; symmetrical about ½ at the edge.
 fn prefiltered_shares(depth: vec3f) -> vec3f {
-    let away = abs(depth);
-    // Linear between 11/12 on the outermost voxel and 1 on the next; and between 1/12 and 11/12 across the edge.
-    let shares = min(0.5 + away * (5.0 / 6.0), min((away + 10.5) / 12.0, vec3f(1.0)));
-    return select(1.0 - shares, shares, depth >= vec3f(0.0));
+    // From 1/12 to 11/12 between the voxels beside the edge, and on to 0 and 1 on the next: two slopes, 1/12 and what
+    // 5/6 is more than that.
+    return 0.5 + 0.75 * clamp(depth, vec3f(-0.5), vec3f(0.5))
+        + clamp(depth, vec3f(-EDGE_REACH), vec3f(EDGE_REACH)) * (1.0 / 12.0);
 }
 
 // The same of the kernel at hand. Branches would spare software drivers nothing.
@@ -47,20 +48,28 @@ fn shares_inside(depth: vec3f) -> vec3f {
     return select(1.0 - shares, shares, depth >= vec3f(0.0));
 }
 
-// The share of a kernel that lies within the grid, from those before and behind along each axis.
-fn product_of(before: vec3f, behind: vec3f) -> f32 {
-    let shares = max(before + behind - 1.0, vec3f(0.0));
-    return shares.x * shares.y * shares.z;
-}
-
 // The share of a kernel around an index-space point that lies on the voxels of a grid, where it is `width` times as
 // wide as on voxels.
 fn presence(p: vec3f, dims: vec3f, width: f32) -> f32 {
-    return product_of(shares_inside((p + 0.5) / width), shares_inside((dims - 0.5 - p) / width));
+    let before = p + 0.5;
+    let behind = dims - 0.5 - p;
+#if FACES > 1
+    let shares = max(shares_inside(before / width) + shares_inside(behind / width) - 1.0, vec3f(0.0));
+#else
+    let shares = shares_inside(min(before, behind) / width);
+#endif
+    return shares.x * shares.y * shares.z;
 }
 
 // The same of the prefiltered kernel.
 fn prefiltered_presence(p: vec3f, dims: vec3f, width: f32) -> f32 {
-    return product_of(prefiltered_shares((p + 0.5) / width), prefiltered_shares((dims - 0.5 - p) / width));
+    let before = p + 0.5;
+    let behind = dims - 0.5 - p;
+#if FACES > 1
+    let shares = max(prefiltered_shares(before / width) + prefiltered_shares(behind / width) - 1.0, vec3f(0.0));
+#else
+    let shares = prefiltered_shares(min(before, behind) / width);
+#endif
+    return shares.x * shares.y * shares.z;
 }
 #endif

@@ -65,8 +65,10 @@ pub(crate) struct Reconstruction {
 pub(crate) enum Ends {
     /// Away from all of that.
     Nowhere,
-    /// At the faces of the grid.
+    /// At the faces of the grid, of which no kernel reaches two that are opposite.
     AtFaces,
+    /// At faces that lie so near to each other that a kernel may be cut by two.
+    BetweenFaces,
     /// At the faces, and where voxels are missing.
     AtMissing,
 }
@@ -74,7 +76,12 @@ pub(crate) enum Ends {
 impl Ends {
     /// `MISSING` and `FACES`.
     pub(crate) fn constants(self) -> [(&'static str, f64); 2] {
-        [flag("MISSING", self == Self::AtMissing), flag("FACES", self != Self::Nowhere)]
+        let faces = match self {
+            Self::Nowhere => 0.0,
+            Self::AtFaces => 1.0,
+            Self::BetweenFaces | Self::AtMissing => 2.0,
+        };
+        [flag("MISSING", self == Self::AtMissing), ("FACES", faces)]
     }
 }
 

@@ -328,7 +328,7 @@ impl GpuVolume {
 
     /// Where what is shown ends with the data, if nothing is known of what is shown.
     pub(crate) fn ends_of_all(&self) -> Ends {
-        if self.presence.is_some() { Ends::AtMissing } else { Ends::AtFaces }
+        if self.presence.is_some() { Ends::AtMissing } else { Ends::BetweenFaces }
     }
 
     /// The uniform that describes the grid to a pass whose samples see `dilation` cells around theirs.

@@ -12,6 +12,10 @@ use crate::gpu::{Context, GpuError};
 use crate::model::{BakedTransfer, COLORS, Settings};
 use crate::plan::{BrickSet, CellDistances, CellSet, CellsAhead, TablesKey};
 
+/// Voxels between opposite faces from which on no kernel that is not stretched reaches both: EDGE_REACH in
+/// `shaders/density/presence.wgsl`, twice.
+const KERNEL_AT_FACES: f64 = 3.0;
+
 /// A baked transfer function: its table and where it shows anything.
 #[derive(Debug, Clone)]
 pub(crate) struct Table {
@@ -101,7 +105,11 @@ impl Table {
         }
         // A face lies half a voxel before the first cell.
         let layers = level.exp2().ceil() as i32;
-        if i32::from(self.clearance) > layers - 1 + dilation { Ends::Nowhere } else { Ends::AtFaces }
+        if i32::from(self.clearance) > layers - 1 + dilation {
+            return Ends::Nowhere;
+        }
+        let thinnest = volume.volume.dims().into_iter().min().unwrap_or_default() as f64;
+        if thinnest < KERNEL_AT_FACES * level.exp2() { Ends::BetweenFaces } else { Ends::AtFaces }
     }
 
     /// What it was baked to.
