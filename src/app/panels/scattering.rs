@@ -5,8 +5,8 @@ use eframe::egui::Ui;
 use super::super::text;
 use super::super::text::common::TIMES;
 use super::Panels;
-use super::controls::{Number, advanced, choice};
-use super::shadows::RESOLUTIONS;
+use super::controls::{Number, advanced};
+use super::shadows::soft_resolution;
 use crate::model::{MAX_ANISOTROPY, MAX_BOUNCES, SKY_DIRECTIONS};
 
 /// Shows the section.
@@ -33,7 +33,9 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
             let number = Number::new(text::scattering::DIRECTIONS, least..=most).decimals(0);
             number.show(ui, &mut directions, f64::from(defaults.directions));
             scattering.directions = directions.round().clamp(least, most) as u32;
-            choice(ui, text::shadows::RESOLUTION, &mut scattering.resolution, &RESOLUTIONS);
+            let (shadows, dims) = (&panels.settings.shadows, panels.volume.map(|volume| volume.dims));
+            let used = |resolution| Some(shadows.soft(resolution, dims?));
+            soft_resolution(ui, &mut scattering.resolution, panels.facts.bounces_cost(), used);
         });
     });
 }

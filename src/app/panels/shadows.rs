@@ -8,8 +8,9 @@ use super::controls::{Number, advanced, choice, choice_with, row, switch, unlabe
 use super::{Panels, sampling};
 use crate::app::common::commands::Command;
 use crate::app::common::theme;
+use crate::app::viewport::LightCost;
 use crate::model::{
-    Deposit, LightStorage, MAX_LEAST_BLOCKS, MAX_LIGHT_SAMPLES, NearField, Precision, Quality, Resolution,
+    Deposit, LightShape, LightStorage, MAX_LEAST_BLOCKS, MAX_LIGHT_SAMPLES, NearField, Precision, Quality, Resolution,
     ReverseKernel, ShadowAlgorithm,
 };
 
@@ -23,7 +24,7 @@ const ALGORITHMS: [(ShadowAlgorithm, Named); 4] = [
     (ShadowAlgorithm::Direct, text::shadows::DIRECT),
 ];
 
-pub(super) const RESOLUTIONS: [(Resolution, Named); 3] = [
+const RESOLUTIONS: [(Resolution, Named); 3] = [
     (Resolution::Full, text::shadows::FULL),
     (Resolution::Half, text::shadows::HALF),
     (Resolution::Quarter, text::shadows::QUARTER),
@@ -82,13 +83,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
         transmission.show(ui, &mut panels.settings.shadows.transmission, default);
         choice(ui, text::shadows::NEAR_FIELD, &mut panels.settings.shadows.near_field, &NEAR_FIELDS);
         switch(ui, text::shadows::FIRST_TOUCH, &mut panels.settings.shadows.first_touch);
-        let (before, cost) = (panels.settings.shadows.resolution, panels.facts.light_cost());
-        let cost_of = |resolution: &Resolution| {
-            let cost = cost?.finer(before.divisor() as f64 / resolution.divisor() as f64);
-            Some(text::shadows::volume_cost(&text::shadows::cost(cost.ms, cost.mebibytes)))
-        };
-        let resolution = &mut panels.settings.shadows.resolution;
-        choice_with(ui, text::shadows::RESOLUTION, resolution, &RESOLUTIONS, cost_of);
+        resolution(ui, panels);
         advanced(ui, "advanced shadows", |ui| {
             let combines = panels.settings.combines_lights();
             let shadows = &mut panels.settings.shadows;
@@ -105,7 +100,8 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
                 Number::new(text::shadows::AREA_SAMPLES, 1.0..=f64::from(MAX_LIGHT_SAMPLES)).decimals(0);
             number.show(ui, &mut points, f64::from(panels.defaults.shadows.area.samples));
             *samples = points.round().clamp(1.0, f64::from(MAX_LIGHT_SAMPLES)) as u32;
-            choice(ui, text::shadows::AREA_RESOLUTION, &mut shadows.area.resolution, &RESOLUTIONS);
+            area_resolution(ui, panels);
+            let shadows = &mut panels.settings.shadows;
             let mut blocks = f64::from(shadows.least_blocks);
             let number =
                 Number::new(text::shadows::LEAST_BLOCKS, 1.0..=f64::from(MAX_LEAST_BLOCKS)).decimals(0);
@@ -113,6 +109,52 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
             shadows.least_blocks = blocks.round().clamp(1.0, f64::from(MAX_LEAST_BLOCKS)) as u32;
         });
     });
+}
+
+/// What a volume takes of another resolution than that of the one that was measured.
+fn at_resolution(cost: LightCost, measured: Resolution, wanted: Resolution) -> String {
+    let cost = cost.finer(measured.divisor() as f64 / wanted.divisor() as f64);
+    text::shadows::cost(cost.ms, cost.mebibytes)
+}
+
+/// How finely points are lit.
+fn resolution(ui: &mut Ui, panels: &mut Panels<'_>) {
+    let (lights, measured) = (&panels.settings.lights, panels.settings.shadows.resolution);
+    let cost = panels.facts.cost_of(|at| lights.get(at).is_some_and(|light| light.shape == LightShape::Point));
+    let cost_of = |&wanted: &Resolution| {
+        Some(text::shadows::volume_cost(&at_resolution(cost?, measured, wanted)))
+    };
+    let resolution = &mut panels.settings.shadows.resolution;
+    choice_with(ui, text::shadows::RESOLUTION, resolution, &RESOLUTIONS, cost_of);
+}
+
+/// How finely lights that have a size do.
+fn area_resolution(ui: &mut Ui, panels: &mut Panels<'_>) {
+    let (lights, shadows) = (&panels.settings.lights, &panels.settings.shadows);
+    let dims = panels.volume.map(|volume| volume.dims);
+    let cost = panels.facts.cost_of(|at| lights.get(at).is_some_and(|light| light.shape != LightShape::Point));
+    let (points, least) = (shadows.resolution, shadows.least_blocks);
+    let used = |resolution: Resolution| Some(points.max(resolution.with_blocks(dims?, least)));
+    let measured = used(shadows.area.resolution);
+    let cost_of = |&wanted: &Resolution| {
+        Some(text::shadows::area_cost(&at_resolution(cost?, measured?, used(wanted)?)))
+    };
+    let resolution = &mut panels.settings.shadows.area.resolution;
+    choice_with(ui, text::shadows::AREA_RESOLUTION, resolution, &RESOLUTIONS, cost_of);
+}
+
+/// How finely light is found that comes from all around: what there is once, and took so much.
+pub(super) fn soft_resolution(
+    ui: &mut Ui,
+    resolution: &mut Resolution,
+    cost: Option<LightCost>,
+    used: impl Fn(Resolution) -> Option<Resolution>,
+) {
+    let measured = used(*resolution);
+    let cost_of = |&wanted: &Resolution| {
+        Some(text::shadows::soft_cost(&at_resolution(cost?, measured?, used(wanted)?)))
+    };
+    choice_with(ui, text::shadows::RESOLUTION, resolution, &RESOLUTIONS, cost_of);
 }
 
 /// What takes effect without refilling a light volume.

@@ -6,7 +6,7 @@ use super::super::text::common::{DEGREES, TIMES};
 use super::super::text::{self, Named};
 use super::Panels;
 use super::controls::{Number, advanced, choice, color, row};
-use super::shadows::RESOLUTIONS;
+use super::shadows::soft_resolution;
 use crate::app::common::commands::Command;
 use crate::model::{SKY_DIRECTIONS, SkyMode, SkyPicture};
 
@@ -54,7 +54,9 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
             let number = Number::new(text::sky::DIRECTIONS, least..=most).decimals(0);
             number.show(ui, &mut directions, f64::from(defaults.directions));
             sky.directions = directions.round().clamp(least, most) as u32;
-            choice(ui, text::shadows::RESOLUTION, &mut sky.resolution, &RESOLUTIONS);
+            let (shadows, dims) = (&panels.settings.shadows, panels.volume.map(|volume| volume.dims));
+            let used = |resolution| Some(shadows.soft(resolution, dims?));
+            soft_resolution(ui, &mut sky.resolution, panels.facts.sky_cost(), used);
         });
     });
 }

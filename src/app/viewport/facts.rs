@@ -52,6 +52,10 @@ pub(in crate::app) struct Facts {
     pub gpu_mebibytes: f64,
     /// The light volume of each light of the picture, if it has one.
     pub light_volumes: Vec<Option<LightFigures>>,
+    /// The volume of the sky, if there is one.
+    pub sky: Option<LightFigures>,
+    /// That of light that has bounced.
+    pub bounces: Option<LightFigures>,
     /// What the renderer does now.
     pub doing: Doing,
 }
@@ -66,6 +70,12 @@ pub(in crate::app) struct LightCost {
 }
 
 impl LightCost {
+    /// What a filled volume took; none of one that is being filled.
+    fn of(figures: &LightFigures) -> Option<Self> {
+        let mebibytes = figures.bytes as f64 / f64::from(1 << 20);
+        figures.complete.then_some(Self { ms: figures.fill_ms, mebibytes })
+    }
+
     /// At another resolution: voxels that are so many times as fine along each axis.
     pub(in crate::app) fn finer(self, times: f64) -> Self {
         let voxels = times.powi(3);
@@ -73,19 +83,35 @@ impl LightCost {
     }
 }
 
+/// The dearest of some volumes.
+fn dearest<'a>(volumes: impl Iterator<Item = &'a LightFigures>) -> Option<LightCost> {
+    volumes.filter_map(LightCost::of).max_by(|a, b| {
+        let ms = |cost: &LightCost| cost.ms.unwrap_or_default();
+        ms(a).total_cmp(&ms(b)).then(a.mebibytes.total_cmp(&b.mebibytes))
+    })
+}
+
 impl Facts {
     /// What one more light that casts shadows would cost, as the dearest does that there is; none where nothing was
     /// measured.
     pub(in crate::app) fn light_cost(&self) -> Option<LightCost> {
-        let figures = self.light_volumes.iter().flatten().filter(|figures| figures.complete);
-        let cost = |figures: &LightFigures| LightCost {
-            ms: figures.fill_ms,
-            mebibytes: figures.bytes as f64 / f64::from(1 << 20),
-        };
-        figures.map(cost).max_by(|a, b| {
-            let ms = |cost: &LightCost| cost.ms.unwrap_or_default();
-            ms(a).total_cmp(&ms(b)).then(a.mebibytes.total_cmp(&b.mebibytes))
-        })
+        dearest(self.light_volumes.iter().flatten())
+    }
+
+    /// What one of these lights takes: the dearest.
+    pub(in crate::app) fn cost_of(&self, is_meant: impl Fn(usize) -> bool) -> Option<LightCost> {
+        let meant = self.light_volumes.iter().enumerate().filter(|(light, _)| is_meant(*light));
+        dearest(meant.filter_map(|(_, figures)| figures.as_ref()))
+    }
+
+    /// What the sky takes.
+    pub(in crate::app) fn sky_cost(&self) -> Option<LightCost> {
+        self.sky.as_ref().and_then(LightCost::of)
+    }
+
+    /// What light takes that bounces.
+    pub(in crate::app) fn bounces_cost(&self) -> Option<LightCost> {
+        self.bounces.as_ref().and_then(LightCost::of)
     }
 }
 
@@ -111,6 +137,8 @@ impl Viewport {
             dark_share: figures.dark_share,
             gpu_mebibytes: figures.gpu_bytes as f64 / f64::from(1 << 20),
             light_volumes: figures.light_volumes.clone(),
+            sky: figures.sky,
+            bounces: figures.bounces,
             doing: self.doing(looks, figures.refining),
         }
     }

@@ -24,7 +24,7 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, ColorImage};
 
-pub(super) use self::facts::{Doing, Facts};
+pub(super) use self::facts::{Doing, Facts, LightCost};
 use super::worker::mailbox::Frame;
 use super::worker::quality::QualityLevel;
 use super::worker::render_thread::RenderThread;

@@ -36,6 +36,10 @@ pub(crate) struct Figures {
     pub(crate) light_bytes: u64,
     /// The light volume of each light, if it has one.
     pub(crate) light_volumes: Vec<Option<LightFigures>>,
+    /// The volume of the sky, if there is one.
+    pub(crate) sky: Option<LightFigures>,
+    /// That of light that has bounced.
+    pub(crate) bounces: Option<LightFigures>,
     /// Footprints that the last full-quality picture has splatted; 0 of one that gathers.
     pub(crate) splats: u64,
     /// Share of what the last full-quality picture shows that is nearly black.

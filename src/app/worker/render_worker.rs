@@ -319,6 +319,8 @@ impl RenderWorker {
         figures.cached_light_volumes = renderer.cached_light_volumes();
         figures.light_bytes = renderer.light_bytes();
         figures.light_volumes = renderer.light_figures(&request);
+        figures.sky = renderer.sky_figures(&request);
+        figures.bounces = renderer.bounces_figures(&request);
         figures.gpu_bytes = renderer.gpu_bytes();
         figures.shows_nothing = shows_nothing;
         figures.refining = None;

@@ -1,5 +1,6 @@
 //! The volume of light that has bounced.
 
+use crate::gpu::resources::fill_time::FillTime;
 use crate::gpu::sky::volume::{SUM_BYTES, divisor_for};
 use crate::gpu::volume::texture_3d;
 use crate::gpu::{Context, GpuError};
@@ -17,6 +18,8 @@ pub(crate) struct BouncesVolume {
     pub divisor: usize,
     /// Linear RGB.
     pub view: wgpu::TextureView,
+    /// How long it took.
+    pub fill: FillTime,
     /// Counts up with every use; the least recently used goes first.
     pub last_used: u64,
 }
@@ -39,7 +42,7 @@ impl BouncesVolume {
                 | wgpu::TextureUsages::COPY_SRC,
         ))?;
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        Ok(Self { dims, divisor, view, last_used: 0 })
+        Ok(Self { dims, divisor, view, fill: FillTime::default(), last_used: 0 })
     }
 
     /// Index space to texture coordinates: (p + ½) × lookup.

@@ -1,12 +1,12 @@
 //! Attenuation volumes: one texture per light.
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use super::floor_shadow::FloorShadow;
 use crate::data::BRICK_EDGE;
 use crate::gpu::pipelines::binding::{Named, view_of};
 use crate::gpu::pipelines::variant::Only;
+use crate::gpu::resources::fill_time::FillTime;
 use crate::gpu::resources::pass;
 use crate::gpu::volume::listed_bricks::{self, Listed};
 use crate::gpu::volume::{Gpu, GpuVolume, texture_3d};
@@ -37,10 +37,8 @@ pub(crate) struct LightVolume {
     margin: CellSet,
     /// Cells of the margin that are cleared, by this volume or the one that had its texture before.
     cleared: Option<CellSet>,
-    /// When the first of its steps was recorded.
-    started: Option<Instant>,
-    /// Milliseconds from the first of its steps to the last.
-    pub fill_ms: Option<f64>,
+    /// How long it took.
+    pub fill: FillTime,
     /// Counts up with every use; the least recently used goes first.
     pub last_used: u64,
 }
@@ -94,8 +92,7 @@ impl LightVolume {
             filled,
             reach,
             aheads,
-            started: None,
-            fill_ms: None,
+            fill: FillTime::default(),
             last_used: 0,
         };
         let fits = |known: &Self| known.dims == dims && known.texture.format() == format;
@@ -125,8 +122,7 @@ impl LightVolume {
             aheads: self.aheads.clone(),
             margin: CellSet::default(),
             cleared: None,
-            started: None,
-            fill_ms: None,
+            fill: FillTime::default(),
             last_used: 0,
         })
     }
@@ -173,13 +169,8 @@ impl LightVolume {
 
     /// The first of its steps is recorded.
     pub(crate) fn begin(&mut self) {
-        self.started.get_or_insert_with(Instant::now);
+        self.fill.begin();
         self.cleared = Some(self.margin.clone());
-    }
-
-    /// The last of its steps was recorded.
-    pub(crate) fn finish(&mut self) {
-        self.fill_ms = self.started.map(|started| started.elapsed().as_secs_f64() * 1000.0);
     }
 
     /// Whether it holds attenuations of red, green and blue light.

@@ -2,11 +2,12 @@
 
 use crate::gpu::light::volume::LightVolume;
 use crate::gpu::resources::cached::Cached;
+use crate::gpu::resources::fill_time::FillTime;
 use crate::gpu::resources::readback::read_word;
 use crate::gpu::{GpuError, Renderer};
-use crate::plan::{LightKey, Request};
+use crate::plan::{BouncesKey, LightKey, Request, SkyKey};
 
-/// A light's volume, for display.
+/// A volume of light, for display.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LightFigures {
     /// Whether it is filled.
@@ -25,11 +26,30 @@ impl Renderer {
             let wanted = key.as_ref()?;
             let is_same = |light: &&Cached<LightKey, LightVolume>| *light.key() == *wanted;
             let light = loaded.value.lights.iter().find(is_same)?;
-            // Others only take note of what they will do, and return at once.
-            let fill_ms = light.value.fill_ms.filter(|_| self.context().is_software());
-            Some(LightFigures { complete: light.is_complete(), fill_ms, bytes: light.value.bytes() })
+            Some(self.filled(light.is_complete(), &light.value.fill, light.value.bytes()))
         };
         (0..request.settings.lights.len()).map(|light| figures(&LightKey::of(request, light))).collect()
+    }
+
+    /// The volume of the sky of a request at full resolution, if there is one.
+    pub fn sky_figures(&self, request: &Request) -> Option<LightFigures> {
+        let wanted = SkyKey::of(request)?;
+        let sky = self.loaded.as_ref()?.value.skies.iter().find(|sky| *sky.key() == wanted)?;
+        Some(self.filled(sky.is_complete(), &sky.value.fill, sky.value.bytes()))
+    }
+
+    /// The volume of bounced light of a request at full resolution, if there is one.
+    pub fn bounces_figures(&self, request: &Request) -> Option<LightFigures> {
+        let wanted = BouncesKey::of(request)?;
+        let known = &self.loaded.as_ref()?.value.bounces;
+        let bounces = known.iter().find(|bounces| *bounces.key() == wanted)?;
+        Some(self.filled(bounces.is_complete(), &bounces.value.fill, bounces.value.bytes()))
+    }
+
+    fn filled(&self, complete: bool, fill: &FillTime, bytes: u64) -> LightFigures {
+        // Others only take note of what they will do, and return at once.
+        let fill_ms = fill.took_ms().filter(|_| self.context().is_software());
+        LightFigures { complete, fill_ms, bytes }
     }
 
     /// Whether the last picture shows nothing of its volume: all of it is transparent.

@@ -1,6 +1,7 @@
 //! What every pass works with: buffers and textures that are used again, dispatches, products with their keys.
 
 pub(super) mod cached;
+pub(super) mod fill_time;
 pub(super) mod part;
 pub(super) mod pass;
 pub(super) mod pool;

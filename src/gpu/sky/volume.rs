@@ -1,6 +1,7 @@
 //! The volume of the sky's visibility.
 
 use super::floor_map::FloorMap;
+use crate::gpu::resources::fill_time::FillTime;
 use crate::gpu::volume::texture_3d;
 use crate::gpu::{Context, GpuError};
 use crate::model::Resolution;
@@ -23,6 +24,8 @@ pub(crate) struct SkyVolume {
     pub view: wgpu::TextureView,
     /// What the floor sees of the sky, where there was one when it was filled.
     pub floor: Option<FloorMap>,
+    /// How long it took.
+    pub fill: FillTime,
     /// Counts up with every use; the least recently used goes first.
     pub last_used: u64,
 }
@@ -51,7 +54,7 @@ impl SkyVolume {
         ))?;
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let floor = floor.map(|place| FloorMap::new(context, place)).transpose()?;
-        Ok(Self { dims, divisor, view, floor, last_used: 0 })
+        Ok(Self { dims, divisor, view, floor, fill: FillTime::default(), last_used: 0 })
     }
 
     /// Index space to texture coordinates: (p + ½) × lookup.

@@ -152,6 +152,16 @@ pub(crate) fn volume_cost(cost: &str) -> String {
     format!("Each light volume takes about {cost}")
 }
 
+/// What each light takes that has a size.
+pub(crate) fn area_cost(cost: &str) -> String {
+    format!("Each light that has a size takes about {cost}")
+}
+
+/// What something takes that there is once.
+pub(crate) fn soft_cost(cost: &str) -> String {
+    format!("Takes about {cost}")
+}
+
 /// Milliseconds, where they were measured, and mebibytes.
 pub(crate) fn cost(ms: Option<f64>, mebibytes: f64) -> String {
     let memory = if mebibytes < 10.0 { format!("{mebibytes:.1} MiB") } else { format!("{mebibytes:.0} MiB") };

@@ -102,7 +102,7 @@ impl Job<'_> {
                 Product::Light(build) => {
                     let build = &mut self.builds[*build];
                     let light = &mut self.loaded.value.lights[build.slot];
-                    light.value.finish();
+                    light.value.fill.finish();
                     light.finish();
                     let has_scratch = build.average.take().is_some() | build.colors.take().is_some();
                     if has_scratch {
@@ -120,14 +120,18 @@ impl Job<'_> {
                 }
                 Product::Sky => {
                     if let Some(slot) = self.sky.slot {
-                        self.loaded.value.skies[slot].finish();
+                        let sky = &mut self.loaded.value.skies[slot];
+                        sky.value.fill.finish();
+                        sky.finish();
                     }
                     self.sky.build = None;
                     self.tools.pool.forget_groups();
                 }
                 Product::Bounces => {
                     if let Some(slot) = self.bounces.slot {
-                        self.loaded.value.bounces[slot].finish();
+                        let bounces = &mut self.loaded.value.bounces[slot];
+                        bounces.value.fill.finish();
+                        bounces.finish();
                     }
                     self.bounces.build = None;
                     self.tools.pool.forget_groups();
@@ -235,6 +239,8 @@ impl Job<'_> {
         step: BounceStep,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
+        let slot = self.bounces.slot.and_then(|slot| self.loaded.value.bounces.get_mut(slot));
+        slot.into_iter().for_each(|bounces| bounces.value.fill.begin());
         let loaded = &self.loaded.value;
         let Some(build) = &self.bounces.build else { return Ok(()) };
         let bytes = self.targets.bytes() + loaded.bytes() + self.tools.pool.bytes() + build.bytes();
@@ -257,6 +263,8 @@ impl Job<'_> {
         batch: Option<usize>,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
+        let slot = self.sky.slot.and_then(|slot| self.loaded.value.skies.get_mut(slot));
+        slot.into_iter().for_each(|sky| sky.value.fill.begin());
         let loaded = &self.loaded.value;
         let Some(build) = &self.sky.build else { return Ok(()) };
         let bytes = self.targets.bytes() + loaded.bytes() + self.tools.pool.bytes() + build.bytes();
