@@ -60,6 +60,7 @@ use self::viewport::hints::Hints;
 use self::viewport::light_handles::LightHandles;
 use self::viewport::light_probe::LightProbe;
 use self::viewport::orbit::Orbit;
+use self::viewport::overlay::ct_looks::CtLooks;
 use self::viewport::overlay::Overlay;
 use self::viewport::turning::Turning;
 use self::viewport::{Viewport, paint_callback};
@@ -160,6 +161,7 @@ pub struct App {
     strip: Strip,
     help: Help,
     hints: Hints,
+    ct_looks: CtLooks,
     messages: Messages,
     /// The longest frame so far; see `status_file`.
     longest_ui_ms: f64,
@@ -295,7 +297,8 @@ impl eframe::App for App {
             commands.push(Command::OpenDropped(dropped));
         }
         let facts = self.viewport.facts(&self.compare.looks(&self.settings));
-        self.palette.ui(&ctx, self.settings.camera.up, &mut commands);
+        let kind = self.volume.as_ref().map(|volume| volume.kind);
+        self.palette.ui(&ctx, self.settings.camera.up, kind, &mut commands);
         self.chooser.ui(&ctx, self.volume.as_ref(), self.loader.options(), &mut commands);
         self.around(ui, &facts, &mut commands);
         self.picture(ui, &facts, &mut commands);

@@ -48,7 +48,8 @@ impl App {
             },
         );
         let exporting = self.export.progress_unseen();
-        status::show(ui, facts, self.loader.progress(), exporting, &mut self.messages, commands);
+        let went = self.history.went(&self.settings);
+        status::show(ui, facts, self.loader.progress(), exporting, went, &mut self.messages, commands);
         if let Some(volume) = &self.volume {
             let panel = egui::Panel::bottom("transfer").resizable(true).default_size(theme::EDITOR_HEIGHT);
             let panel = panel.frame(theme::panel(ui));
@@ -79,5 +80,6 @@ impl App {
         self.kept_strip(ui, commands);
         dock::reserve(ui);
         self.layout.docked = dock::docked(ui.ctx());
+        (self.layout.slices, self.layout.light_slice) = (self.slices.open, self.light_slice.open);
     }
 }

@@ -29,6 +29,9 @@ pub(crate) struct Layout {
     pub kept: bool,
     /// Tools that are docked beside the picture when they are open.
     pub docked: BTreeSet<String>,
+    /// Cuts through the data are shown, and those through light volumes.
+    pub slices: bool,
+    pub light_slice: bool,
     /// The folder where the last export went.
     pub exports: Option<PathBuf>,
     /// Dark, light, or as the system is.
@@ -45,6 +48,8 @@ impl Default for Layout {
             transfer: true,
             kept: false,
             docked: BTreeSet::new(),
+            slices: false,
+            light_slice: false,
             exports: None,
             theme: ThemePreference::Dark,
             picture_only: false,

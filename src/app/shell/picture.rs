@@ -14,6 +14,7 @@ use crate::app::viewport::hints::Hints;
 use crate::app::viewport::light_handles::LightHandles;
 use crate::app::viewport::light_probe::{LightProbe, Pointing};
 use crate::app::viewport::orbit::Orbit;
+use crate::app::viewport::overlay::ct_looks::CtLooks;
 use crate::app::viewport::overlay::{Overlay, crop_frame};
 use crate::app::viewport::turning::Turning;
 use crate::app::viewport::view_projection::ViewProjection;
@@ -55,6 +56,8 @@ pub(crate) struct PictureInputs<'a> {
     pub slices: &'a mut Slices,
     /// What the first picture says.
     pub hints: &'a mut Hints,
+    /// What is mostly looked for in a CT.
+    pub ct_looks: &'a mut CtLooks,
     /// The open volume.
     pub volume: Option<&'a VolumeFacts>,
     /// What is known of the renderer's work.
@@ -84,6 +87,7 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
         shape,
         slices,
         hints,
+        ct_looks,
         volume,
         facts,
         commands,
@@ -95,10 +99,11 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
     let mut response = ui.interact(inside, ui.scope_id().with("picture"), Sense::click_and_drag());
     response.rect = canvas.rect;
     response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, text::picture::PICTURE));
-    let Some(&VolumeFacts { scene, is_anatomical, has_unknown_scale, .. }) = volume else {
+    let Some(volume) = volume else {
         ui.painter().rect_filled(canvas.rect, 0.0, theme::EMPTY_CANVAS);
         return (canvas, Ok(()));
     };
+    let &VolumeFacts { scene, is_anatomical, has_unknown_scale, .. } = volume;
     let is_by_value = settings.labels.is_empty();
     let is_one_view = !compare.shows_two_views();
     orbit::navigate(
@@ -150,6 +155,9 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
     }
     if overlay.on {
         light_chips::show(ui, canvas.rect, settings, selected_light, facts, commands);
+        if is_one_view {
+            ct_looks.show(ui, canvas.rect, volume, commands);
+        }
     }
     if let Some(dataset) = viewport.dataset().filter(|_| probe.on && is_one_view) {
         let pointer = response.hover_pos().filter(|_| !response.dragged());
@@ -208,6 +216,7 @@ impl App {
             shape: self.export.shape().filter(|_| !self.layout.picture_only),
             slices: &mut self.slices,
             hints: &mut self.hints,
+            ct_looks: &mut self.ct_looks,
             volume: self.volume.as_ref(),
             facts,
             commands,

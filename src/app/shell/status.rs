@@ -14,12 +14,13 @@ use crate::data::plain;
 /// Characters of a path in the bar: more than the widest screen shows.
 const LONGEST_PATH: usize = 500;
 
-/// Shows the bar.
+/// Shows the bar. `went`: the last step back or forward.
 pub(crate) fn show(
     ui: &mut egui::Ui,
     facts: &Facts,
     opening: Option<LoadProgress<'_>>,
     exporting: Option<Unseen>,
+    went: Option<&str>,
     messages: &mut Messages,
     commands: &mut Vec<Command>,
 ) {
@@ -41,6 +42,13 @@ pub(crate) fn show(
                 }
             } else {
                 doing(ui, facts.doing);
+                if let Some(went) = went {
+                    ui.separator();
+                    let link = ui.add(egui::Link::new(RichText::new(went).weak()));
+                    if link.on_hover_text(text::status::WENT_TIP).clicked() {
+                        commands.push(Command::ToggleHistory);
+                    }
+                }
             }
             if let Some(exporting) = exporting {
                 export(ui, exporting, commands);

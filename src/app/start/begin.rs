@@ -28,6 +28,7 @@ use crate::app::viewport::hints::Hints;
 use crate::app::viewport::light_handles::LightHandles;
 use crate::app::viewport::light_probe::LightProbe;
 use crate::app::viewport::orbit::Orbit;
+use crate::app::viewport::overlay::ct_looks::CtLooks;
 use crate::app::viewport::overlay::Overlay;
 use crate::app::viewport::turning::Turning;
 use crate::app::windows::chooser::Chooser;
@@ -77,6 +78,7 @@ impl App {
         let mut app = Self::build(cc, load, storage, memory, legacy)?;
         app.recovery = Recovery::of(app.memory.earlier(), &cc.egui_ctx);
         app.hints = Hints { on: app.memory.is_first() };
+        (app.slices.open, app.light_slice.open) = (app.layout.slices, app.layout.light_slice);
         app.session_is_due = session.is_some();
         app.session = session.map(Session::named);
         app.adjust = adjust;
@@ -183,6 +185,7 @@ impl App {
             strip: Strip::default(),
             help: Help::default(),
             hints: Hints::default(),
+            ct_looks: CtLooks::default(),
             messages: Messages::default(),
             longest_ui_ms: 0.0,
             status_file: StatusFile::from_environment(),

@@ -28,6 +28,9 @@ pub(crate) const OPACITY_ONE: &str = "opacity 1";
 
 pub(crate) const PRESETS: &str = "Presets";
 pub(crate) const TRY_PRESETS_TIP: &str = "Shows each on your volume";
+/// Of a preset that is for another kind of data.
+pub(crate) const FOR_CT: &str = "For Hounsfield units of CT, which these data are not in; where they count from 1024, \
+                                 Data › Corrections › Values can shift them";
 
 pub(crate) const COLORS: &str = "Transfer function";
 pub(crate) const COLOR_MAP_TIP: &str = "Colours the visible values";

@@ -23,7 +23,7 @@ use super::common::theme;
 use super::common::volume_facts::VolumeFacts;
 use super::text;
 use crate::app::panels::set_linked;
-use crate::data::ValueRange;
+use crate::data::{DataKind, ValueRange};
 use crate::gpu::WindowPainter;
 use crate::model::{LabelTable, Settings, TransferFunction};
 
@@ -115,7 +115,7 @@ impl TransferEditor {
             let is_whole = self.curve_tools(ui, settings, volume, span);
             if is_wide {
                 ui.with_layout(from_the_right, |ui| {
-                    self.plot_tools(ui, settings, commands);
+                    self.plot_tools(ui, settings, &volume.kind, commands);
                     if is_whole {
                         self.hint(ui);
                     }
@@ -124,7 +124,7 @@ impl TransferEditor {
         });
         if !is_wide {
             let row = Vec2::new(ui.available_width(), ui.spacing().interact_size.y);
-            ui.allocate_ui_with_layout(row, from_the_right, |ui| self.plot_tools(ui, settings, commands));
+            ui.allocate_ui_with_layout(row, from_the_right, |ui| self.plot_tools(ui, settings, &volume.kind, commands));
         }
         let size = ui.available_size();
         let (area, response) = ui.allocate_exact_size(size.max(Vec2::splat(20.0)), Sense::click_and_drag());
@@ -211,7 +211,13 @@ impl TransferEditor {
     }
 
     /// What replaces the whole curve, and how the plot shows it.
-    fn plot_tools(&mut self, ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Command>) {
+    fn plot_tools(
+        &mut self,
+        ui: &mut Ui,
+        settings: &mut Settings,
+        kind: &DataKind,
+        commands: &mut Vec<Command>,
+    ) {
         let function = self.edited(settings);
         let automatic = text::transfer::AUTOMATIC;
         if ui.button(automatic.name).on_hover_text(automatic.tip).clicked() {
@@ -222,7 +228,7 @@ impl TransferEditor {
         let tick = ui.checkbox(&mut self.log_histogram, log.name).on_hover_text(log.tip);
         menus::found(ui, log, &tick);
         menus::colors(ui, function, commands);
-        menus::presets(ui, commands);
+        menus::presets(ui, kind, commands);
         self.zoom.button(ui);
     }
 

@@ -1,9 +1,10 @@
 //! Finding a command by its name.
 
-use eframe::egui::{self, Align2, Key, Modifiers, TextEdit};
+use eframe::egui::{self, Align2, Key, Modifiers, RichText, TextEdit};
 
 use crate::app::common::commands::{self, Command};
 use crate::app::text;
+use crate::data::DataKind;
 use crate::model::SceneAxis;
 
 /// Lines that are shown at once.
@@ -26,8 +27,15 @@ impl Palette {
         *self = Self { open: true, ..Self::default() };
     }
 
-    /// Shows it, and adds the command that was chosen. Some names say which axis of the scene points up.
-    pub(crate) fn ui(&mut self, ctx: &egui::Context, up_axis: SceneAxis, commands: &mut Vec<Command>) {
+    /// Shows it, and adds the command that was chosen. Some names say which axis of the scene points up. Presets for another
+    /// kind of data than that of the volume are dim.
+    pub(crate) fn ui(
+        &mut self,
+        ctx: &egui::Context,
+        up_axis: SceneAxis,
+        kind: Option<DataKind>,
+        commands: &mut Vec<Command>,
+    ) {
         if !self.open {
             return;
         }
@@ -51,9 +59,20 @@ impl Palette {
             }
             ui.separator();
             for (at, command) in found.iter().take(LINES).enumerate() {
-                let button = egui::Button::selectable(at == self.chosen, &*command.label_with(up_axis))
+                let label = command.label_with(up_axis);
+                let suits = match (command, &kind) {
+                    (Command::UsePreset(preset), Some(kind)) => preset.suits(kind),
+                    _ => true,
+                };
+                let label = RichText::new(&*label);
+                let label = if suits { label } else { label.weak() };
+                let button = egui::Button::selectable(at == self.chosen, label)
                     .shortcut_text(command.shortcut_text(ui.ctx()));
-                if ui.add_sized([ui.available_width(), 20.0], button).clicked() {
+                let mut line = ui.add_sized([ui.available_width(), 20.0], button);
+                if !suits {
+                    line = line.on_hover_text(text::transfer::FOR_CT);
+                }
+                if line.clicked() {
                     run = Some(at);
                 }
             }
@@ -127,7 +146,7 @@ mod tests {
             ("Voxel-Size", "Data", "Spacing"),
             ("mirror", "Data", "Flip"),
             ("slope, intercept", "Data", "Values"),
-            ("anisotropy", "Sky and scattering", "Forward"),
+            ("anisotropy", "Sky and scattering", "Anisotropy"),
             ("rotate environment", "Sky and scattering", "Turn"),
             ("shadow catcher", "Floor", "Shadow alone"),
             ("b-spline", "Camera", "Kernel"),

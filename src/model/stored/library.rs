@@ -7,7 +7,7 @@
 
 use serde_json::Value;
 
-use crate::data::ValueRanges;
+use crate::data::{DataKind, ValueRanges};
 use crate::model::{PresetError, Settings, apply_json};
 
 /// A preset of the library.
@@ -84,6 +84,12 @@ impl Preset {
         let title = self.name.split_once('/').map_or(self.name, |(_, title)| title).replace('_', " ");
         let mut letters = title.chars();
         letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+    }
+
+    /// Whether it has something to show in data of a kind: presets of CT name Hounsfield units, and show nothing or a brick
+    /// of what has other values, those of scanners that count from 1024 among them.
+    pub fn suits(&self, kind: &DataKind) -> bool {
+        self.domain() != "ct" || matches!(kind, DataKind::HounsfieldCt { water } if *water == 0.0)
     }
 
     /// What it is for.

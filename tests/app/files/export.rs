@@ -103,7 +103,7 @@ fn turntables_and_copies_come_from_the_window() {
     harness.key_press(egui::Key::Escape);
     harness.run_steps(3);
     assert!(harness.query_by_label("Export picture or turntable").is_none());
-    assert!(harness.query_by_label_contains("exporting").is_some(), "the status bar says so");
+    assert!(harness.query_by_label_contains("Exporting").is_some(), "the status bar says so");
     click(&mut harness, "Cancel");
     wait_until(&mut harness, "never cancelled", |app| !app.is_exporting());
     let made = made();

@@ -28,7 +28,7 @@ impl History {
     pub(super) fn steps(&self, now: &Step) -> Steps {
         let names = |is_back: bool| {
             // Steps are looked at by taking them.
-            let mut history = Self { undoer: self.undoer.clone() };
+            let mut history = Self { undoer: self.undoer.clone(), went: None };
             let (mut at, mut names) = (now.clone(), Vec::new());
             while if is_back { history.can_undo(&at) } else { history.can_redo(&at) } {
                 let before = at.clone();

@@ -26,12 +26,14 @@ pub(crate) struct Step {
 #[derive(Debug)]
 pub(crate) struct History {
     undoer: Undoer<Step>,
+    /// What the last step back or forward was, and where it has led.
+    went: Option<(String, Settings)>,
 }
 
 impl Default for History {
     fn default() -> Self {
         let settings = undoer::Settings { stable_time: STABLE_S, ..undoer::Settings::default() };
-        Self { undoer: Undoer::with_settings(settings) }
+        Self { undoer: Undoer::with_settings(settings), went: None }
     }
 }
 
@@ -49,7 +51,7 @@ impl History {
             return None;
         }
         // Steps are looked at by taking them.
-        let mut history = Self { undoer: self.undoer.clone() };
+        let mut history = Self { undoer: self.undoer.clone(), went: None };
         let mut other = now.clone();
         let changed = if is_back {
             history.undo(&mut other);
@@ -59,6 +61,11 @@ impl History {
             text::changes::of(&now.settings, &other.settings)
         };
         Some(changed.unwrap_or_else(|| text::changes::KIND_OF_DATA.to_owned()))
+    }
+
+    /// What the step was that has led here, while nothing is changed since.
+    pub(crate) fn went(&self, settings: &Settings) -> Option<&str> {
+        self.went.as_ref().filter(|(_, led_to)| led_to == settings).map(|(words, _)| words.as_str())
     }
 
     /// Takes note of the look, except while something is dragged: a drag is one step.
@@ -148,10 +155,13 @@ impl App {
 
     /// One step back, or one forward again, with a word about it; what reset buttons put back goes along.
     pub(super) fn go(&mut self, is_back: bool, ctx: &egui::Context) {
-        if let Some(what) = self.history.name(&self.step(), is_back) {
-            self.messages.note(text::messages::went(is_back, &what));
-        }
+        let what = self.history.name(&self.step(), is_back);
         self.take_step(is_back, ctx);
+        if let Some(what) = what {
+            let words = text::messages::went(is_back, &what);
+            self.messages.note(words.clone());
+            self.history.went = Some((words, self.settings.clone()));
+        }
     }
 
     /// As [`Self::go`], without a word.

@@ -10,7 +10,7 @@ pub(crate) const DENSITY: Named =
     named("Bounce density", "How much this light meets of the material: less lets it in deeper, as into wax");
 pub(crate) const STRENGTH: Named = named("Bounced light", "What is shown of light that has bounced");
 pub(crate) const ANISOTROPY: Named = named(
-    "Forward",
+    "Anisotropy",
     "Clouds and smoke scatter light on as it came, and glow before it; below 0 they throw it back",
 );
 pub(crate) const DIRECTIONS: Named = named(

@@ -113,7 +113,7 @@ pub(crate) const NEAR_SHORT: Named = named("3 voxels", "Sharp where it matters m
 pub(crate) const NEAR_LONG: Named = named("8 voxels", "Truer yet, and slower: for figures");
 
 pub(crate) const REVERSE_KERNEL: Named =
-    named("Way back", "With which kernel light gets from the sheets into the light volume");
+    named("Reverse kernel", "With which kernel light gets from the sheets into the light volume");
 pub(crate) const TENT: Named = named("Tent", "Narrow: sharper shadows, filled in less time");
 pub(crate) const FORWARD: Named = named("Kernel", "That of the light pass, as in the paper: softer shadows");
 
@@ -132,7 +132,7 @@ pub(crate) const AREA_RESOLUTION: Named = named(
 );
 
 pub(crate) const LEAST_BLOCKS: Named = named(
-    "Least blocks",
+    "Minimum blocks",
     "In how many blocks along the longest edge light of wide lights, of the sky and of bounces is found at least: small volumes are lit as finely as large ones",
 );
 

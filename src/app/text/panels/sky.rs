@@ -21,7 +21,7 @@ pub(crate) const ZENITH: Named = named("Above", "Colour of the sky overhead");
 pub(crate) const HORIZON: Named = named("Horizon", "Colour all around");
 pub(crate) const GROUND: Named = named("Below", "Colour that comes from the ground");
 pub(crate) const TILT: Named =
-    named("Lean", "How far its brightest side leans from overhead: 90° is a large window");
+    named("Tilt", "How far its brightest side leans from overhead: 90° is a large window");
 pub(crate) const TURN: Named = named("Turn", "To which side it leans, about the vertical");
 pub(crate) const DENSITY: Named =
     named("Density", "How much of this light material takes away, compared with other light");

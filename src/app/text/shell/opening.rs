@@ -9,11 +9,11 @@ use std::path::Path;
 pub(crate) const PROGRAM: &str = "Chiaroscuro";
 
 /// What is being done with a volume, in this order.
-pub(crate) const READING: &str = "reading";
-pub(crate) const FITTING: &str = "trying what the graphics adapter can hold";
-pub(crate) const COUNTING: &str = "counting values";
-pub(crate) const UPLOADING: &str = "uploading";
-pub(crate) const FIRST_LOOK: &str = "finding a first look";
+pub(crate) const READING: &str = "Reading";
+pub(crate) const FITTING: &str = "Trying what the graphics adapter can hold";
+pub(crate) const COUNTING: &str = "Counting values";
+pub(crate) const UPLOADING: &str = "Uploading";
+pub(crate) const FIRST_LOOK: &str = "Finding a first look";
 
 /// What did not work; why is said with the details.
 pub(crate) const NOT_OPENED: &str = "Cannot open";

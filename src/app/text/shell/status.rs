@@ -3,11 +3,11 @@
 use crate::data::load::human_bytes;
 use crate::gpu::Stage;
 
-pub(crate) const NO_VOLUME: &str = "no volume";
-pub(crate) const FULL_QUALITY: &str = "full quality";
-pub(crate) const PREVIEW: &str = "preview";
-pub(crate) const NOT_RENDERED: &str = "not rendered";
-pub(crate) const DEVICE_LOST: &str = "graphics device lost";
+pub(crate) const NO_VOLUME: &str = "No volume";
+pub(crate) const FULL_QUALITY: &str = "Full quality";
+pub(crate) const PREVIEW: &str = "Preview";
+pub(crate) const NOT_RENDERED: &str = "Not rendered";
+pub(crate) const DEVICE_LOST: &str = "Graphics device lost";
 
 /// What is done to a file that is being opened, and how many of its bytes have been read.
 pub(crate) fn opening(phase: &str, bytes: Option<[u64; 2]>, source: &str) -> String {
@@ -34,14 +34,17 @@ fn name_of(stage: Stage) -> &'static str {
 
 /// The share of the picture at full quality that is done, and what is done now.
 pub(crate) fn refining(share: f32, stage: Stage) -> String {
-    format!("refining {:.0} %, {}", share * 100.0, name_of(stage))
+    format!("Refining {:.0} %, {}", share * 100.0, name_of(stage))
 }
+
+/// Over the last step back or forward.
+pub(crate) const WENT_TIP: &str = "Shows the list of all steps";
 
 pub(crate) const EXPORTING_TIP: &str = "Shows the window of the export";
 
 /// How many pictures, or parts of one, of an export are done.
 pub(crate) fn exporting(done: u32, total: u32) -> String {
-    if total > 1 { format!("exporting, {done} of {total}") } else { "exporting".to_owned() }
+    if total > 1 { format!("Exporting, {done} of {total}") } else { "Exporting".to_owned() }
 }
 
 /// What the status bar says of the renderer.
@@ -74,7 +77,7 @@ pub(crate) fn figures(figures: &Figures<'_>) -> String {
         String::new()
     };
     format!(
-        "{splats}full {} · preview {} · light volumes {} cached, {} filled · {:.0} MiB · {}{software}",
+        "{splats}Full {} · preview {} · light volumes {} cached, {} filled · {:.0} MiB · {}{software}",
         ms(figures.full_ms),
         ms(figures.preview_ms),
         figures.cached_light_volumes,

@@ -17,6 +17,11 @@ pub(crate) const SHOW_SOMETHING: Named = named(
 pub(crate) const RESET_TRANSFER: Named =
     named("Reset transfer function", "Takes back the transfer function with which the volume was opened");
 
+/// Before what is mostly looked for in a CT.
+pub(crate) const CT_LOOKS: &str = "CT:";
+pub(crate) const CLOSE_CT_LOOKS: &str = "Close this row; presets stay in the editor";
+pub(crate) const CLOSE_CT_LOOKS_SIGN: &str = "×";
+
 /// What is shown where two looks are subtracted.
 pub(crate) fn difference(left: &str, right: &str) -> String {
     format!("{left} − {right}, eight times")

@@ -10,20 +10,18 @@ pub(crate) const PRESETS: &str = "Try presets";
 /// How many of them have been tried.
 pub(crate) fn trying(done: usize, count: usize) -> String {
     if count == 0 {
-        "trying them on your volume".to_owned()
+        "Trying them on your volume".to_owned()
     } else {
-        format!("trying them on your volume, {done} of {count}")
+        format!("Trying them on your volume, {done} of {count}")
     }
 }
-/// What is for another kind of data.
-pub(crate) const FOR_CT: &str = "For Hounsfield units of CT, which these data are not in";
 pub(crate) const AGAIN: &str = "Again, as it looks now";
 /// Why the pictures are small and coarse.
-pub(crate) const QUALITY: &str = "the picture's own size and quality come with a click";
+pub(crate) const QUALITY: &str = "The picture's own size and quality come with a click";
 pub(crate) const USE_TIP: &str = "Use it";
 
 /// Why no light is suggested.
-pub(crate) const NO_LIGHT: &str = "there is no light to be placed: add one, or select one";
+pub(crate) const NO_LIGHT: &str = "There is no light to be placed: add one, or select one";
 
 /// A place for a light, from 1: the best first.
 pub(crate) fn suggestion(light: &str, number: usize) -> String {

@@ -5,28 +5,28 @@ pub(crate) const KEYS_AND_MOUSE: &str = "Keys and mouse";
 
 /// What the mouse does, in the picture and in the editor.
 pub(crate) const MOUSE: [(&str, &str); 22] = [
-    ("Drag the picture", "orbit"),
-    ("Double click on the volume", "turn about what is there"),
-    ("Hold L and drag", "turn the selected light"),
-    ("Arrow keys, with Shift ten times", "turn it by a degree"),
-    ("Ctrl+Shift+1 … 9, Ctrl+1 … 9", "keep a view, look that way again"),
-    ("Shift-drag or middle drag", "pan"),
-    ("Right-drag the picture", "level and window of the curve"),
-    ("Wheel", "nearer to the pointer, or further"),
-    ("Drag a light's handle", "move the light"),
-    ("Wheel on a positional light's handle", "its distance"),
-    ("Drag the square on a spotlight's cone", "widen or narrow the cone"),
-    ("Drag the sides of the crop box", "see less, or more again"),
-    ("Drag or wheel on the clip plane's square", "move it; turn it by the arrow"),
-    ("Drag the line between two looks", "see more of one of them"),
-    ("Click in the transfer function", "add a point"),
-    ("Drag around points, or click with Shift", "select several"),
-    ("Drag a point, or arrow keys", "move what is selected"),
-    ("Double click, or Delete", "remove it"),
-    ("Draw, then drag", "draw the transfer function by hand"),
-    ("Click with the probe on", "keep what it says; two clicks measure"),
-    ("Drag kept views and looks", "put them in another order"),
-    ("Escape while dragging", "back to where it was"),
+    ("Drag the picture", "Orbit"),
+    ("Double click on the volume", "Turn about what is there"),
+    ("Hold L and drag", "Turn the selected light"),
+    ("Arrow keys, with Shift ten times", "Turn it by a degree"),
+    ("Ctrl+Shift+1 … 9, Ctrl+1 … 9", "Keep a view, look that way again"),
+    ("Shift-drag or middle drag", "Pan"),
+    ("Right-drag the picture", "Level and window of the curve"),
+    ("Wheel", "Nearer to the pointer, or further"),
+    ("Drag a light's handle", "Move the light"),
+    ("Wheel on a positional light's handle", "Its distance"),
+    ("Drag the square on a spotlight's cone", "Widen or narrow the cone"),
+    ("Drag the sides of the crop box", "See less, or more again"),
+    ("Drag or wheel on the clip plane's square", "Move it; turn it by the arrow"),
+    ("Drag the line between two looks", "See more of one of them"),
+    ("Click in the transfer function", "Add a point"),
+    ("Drag around points, or click with Shift", "Select several"),
+    ("Drag a point, or arrow keys", "Move what is selected"),
+    ("Double click, or Delete", "Remove it"),
+    ("Draw, then drag", "Draw the transfer function by hand"),
+    ("Click with the probe on", "Keep what it says; two clicks measure"),
+    ("Drag kept views and looks", "Put them in another order"),
+    ("Escape while dragging", "Back to where it was"),
 ];
 
 /// The window that says what this is, and the command that shows it.
@@ -39,8 +39,8 @@ pub(crate) const SOFTWARE_ADAPTER: &str =
 
 /// Over the first picture: what can be done, and what comes of it.
 pub(crate) const HINTS: [(&str, &str); 3] = [
-    ("Drag a light's disc", "the shadows follow your hand"),
-    ("Drag the picture, turn the wheel", "to look from elsewhere, and nearer"),
+    ("Drag a light's disc", "The shadows follow your hand"),
+    ("Drag the picture, turn the wheel", "To look from elsewhere, and nearer"),
     ("Drop a file on the window", "Ctrl+O opens one, Ctrl+P finds everything else"),
 ];
 pub(crate) const CLOSE_HINTS: &str = "Close the hints";

@@ -5,7 +5,7 @@ use crate::app::text::{Named, named};
 pub(crate) const TITLE: &str = "Light volume";
 
 /// By axis.
-pub(crate) const ACROSS: [&str; 3] = ["across x", "across y", "across z"];
+pub(crate) const ACROSS: [&str; 3] = ["Across x", "Across y", "Across z"];
 pub(crate) const SLICE: &str = "Slice";
 
 /// Instead of the slice.

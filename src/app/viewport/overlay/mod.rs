@@ -2,6 +2,7 @@
 //! painted by the window and are therefore never in an export.
 
 pub(in crate::app) mod crop_frame;
+pub(in crate::app) mod ct_looks;
 mod sides;
 
 use eframe::egui::{

@@ -8,7 +8,7 @@ use glam::DVec3;
 use crate::app::common::commands::Command;
 use crate::app::text;
 use crate::app::windows::export::{Subject, Worker};
-use crate::data::{DataKind, Volume};
+use crate::data::Volume;
 use crate::gpu::{LightSearch, SmallLook, Sought, small_volume};
 use crate::model::{
     Camera, ImageSpec, Kernel, Light, PRESETS, Preset, Resolution, Rig, Settings, Slabs, auto,
@@ -118,10 +118,9 @@ fn picture(worker: &mut Worker, subject: &Subject, settings: &Settings) -> Resul
 /// The look with each preset laid over it, but for that of the benchmarks; those for other kinds of data come last.
 fn with_presets(settings: &Settings, volume: &Volume) -> Vec<Candidate> {
     let ranges = volume.ranges();
-    let is_ct = matches!(volume.kind().kind, DataKind::HounsfieldCt { .. });
+    let kind = volume.kind().kind;
     let mut presets: Vec<_> = PRESETS.into_iter().filter(|preset| preset.domain() != "bench").collect();
-    // Those of CT say Hounsfield units, and nothing or a brick of other data.
-    let fits = |preset: &Preset| preset.domain() != "ct" || is_ct;
+    let fits = |preset: &Preset| preset.suits(&kind);
     presets.sort_by_key(|preset| !fits(preset));
     presets
         .into_iter()
@@ -130,7 +129,7 @@ fn with_presets(settings: &Settings, volume: &Volume) -> Vec<Candidate> {
             let [domain, _] = preset.domain_titles();
             let name = text::contact_sheet::preset(domain, &preset.title());
             let fits = fits(&preset);
-            let tip = if fits { text::contact_sheet::USE_TIP } else { text::contact_sheet::FOR_CT };
+            let tip = if fits { text::contact_sheet::USE_TIP } else { text::transfer::FOR_CT };
             let command = Command::UsePreset(preset);
             Some(Candidate { name, tip: tip.to_owned(), settings, command, fits })
         })

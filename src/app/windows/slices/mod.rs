@@ -191,7 +191,8 @@ impl Slices {
         let area = Rect::from_center_size(frame.center(), size);
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, text::slices::across(axis)));
         let painter = ui.painter_at(frame);
-        painter.rect_filled(frame, 0.0, Color32::BLACK);
+        // Not as black as data may be, so that it is seen where these end.
+        painter.rect_filled(frame, 0.0, theme::EMPTY_CANVAS);
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         painter.image(texture.id(), area, whole, Color32::WHITE);
         self.move_cursor(ui, &response, area, axis, dims);

@@ -1,0 +1,74 @@
+//! What is mostly looked for in a CT, one click each, over the foot of its picture; for each volume until it is closed.
+
+use std::path::PathBuf;
+
+use eframe::egui::{self, Align, Layout, Rect, RichText, Ui, UiBuilder, vec2};
+
+use crate::app::common::commands::Command;
+use crate::app::common::theme;
+use crate::app::common::volume_facts::VolumeFacts;
+use crate::app::text;
+use crate::model::PRESETS;
+
+/// Points of its row, and from its foot to that of the picture, where letters of orientation stand.
+const HEIGHT: f32 = 30.0;
+const FOOT: f32 = 34.0;
+
+/// Points beside the words.
+const MARGIN: f32 = 10.0;
+
+/// What it was closed for.
+#[derive(Debug, Default)]
+pub(crate) struct CtLooks {
+    closed_for: Option<PathBuf>,
+}
+
+impl CtLooks {
+    /// Shows it over pictures of a CT that are large enough.
+    pub(crate) fn show(
+        &mut self,
+        ui: &mut Ui,
+        picture: Rect,
+        volume: &VolumeFacts,
+        commands: &mut Vec<Command>,
+    ) {
+        let presets = PRESETS.into_iter().filter(|preset| preset.domain() == "ct" && preset.suits(&volume.kind));
+        let presets: Vec<_> = presets.collect();
+        if presets.is_empty() || self.closed_for.as_ref() == Some(&volume.source) {
+            return;
+        }
+        let font = egui::TextStyle::Button.resolve(ui.style());
+        let (padding, gap) = (2.0 * ui.spacing().button_padding.x, ui.spacing().item_spacing.x);
+        let width_of = |words: &str| {
+            let laid = ui.painter().layout_no_wrap(words.to_owned(), font.clone(), theme::EYE_CURVE);
+            laid.size().x + padding + gap
+        };
+        let titles: f32 = presets.iter().map(|preset| width_of(&preset.title())).sum();
+        let width = width_of(text::picture::CT_LOOKS) + titles + width_of(text::picture::CLOSE_CT_LOOKS_SIGN);
+        let size = vec2(width + 2.0 * MARGIN, HEIGHT);
+        if picture.width() < size.x + 2.0 * MARGIN || picture.height() < 8.0 * HEIGHT {
+            return;
+        }
+        let foot = picture.center_bottom() - vec2(0.0, FOOT + HEIGHT / 2.0);
+        let area = Rect::from_center_size(foot, size);
+        ui.painter_at(picture).rect_filled(area, 8.0, theme::OUTLINE.gamma_multiply(0.78));
+        let layout = Layout::left_to_right(Align::Center);
+        let inside = area.shrink2(vec2(MARGIN, 0.0));
+        let mut ui = ui.new_child(UiBuilder::new().max_rect(inside).layout(layout).id_salt("ct looks"));
+        ui.label(RichText::new(text::picture::CT_LOOKS).color(theme::EYE_CURVE));
+        for preset in presets {
+            let title = RichText::new(preset.title()).color(theme::ACCENT);
+            if ui.add(egui::Button::new(title).frame(false)).on_hover_text(preset.about()).clicked() {
+                commands.push(Command::UsePreset(preset));
+            }
+        }
+        let close = egui::Button::new(RichText::new(text::picture::CLOSE_CT_LOOKS_SIGN).color(theme::GUIDE));
+        let close = ui.add(close.frame(false)).on_hover_text(text::picture::CLOSE_CT_LOOKS);
+        close.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Button, true, text::picture::CLOSE_CT_LOOKS)
+        });
+        if close.clicked() {
+            self.closed_for = Some(volume.source.clone());
+        }
+    }
+}
