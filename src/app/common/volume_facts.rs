@@ -134,7 +134,7 @@ impl VolumeFacts {
 
     /// The unit that suits lengths in the scene.
     pub(crate) fn length_unit(&self) -> LengthUnit {
-        LengthUnit::showing(self.scene.mm_per_unit, self.has_unknown_scale)
+        LengthUnit::of(self.of.length_unit())
     }
 
     /// Whether pictures with these settings show labels, which have looks by their numbers.

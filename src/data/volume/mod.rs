@@ -64,7 +64,7 @@ pub struct Volume {
     unit_mm: Option<f64>,
     is_anatomical: bool,
     hints: Hints,
-    has_unknown_scale: bool,
+    length_unit: SpacingUnit,
     remarks: Vec<String>,
     held: Arc<Held>,
     looking_took: Duration,
@@ -139,7 +139,7 @@ impl Volume {
             unit_mm: None,
             is_anatomical: false,
             hints: Hints::default(),
-            has_unknown_scale: false,
+            length_unit: SpacingUnit::Mm,
             remarks: Vec::new(),
             held: Arc::default(),
             looking_took: Duration::ZERO,
@@ -188,12 +188,12 @@ impl Volume {
     /// States that nobody knows how large voxels are: lengths are in voxels then, not in millimetres.
     #[must_use]
     pub fn with_unknown_scale(self) -> Self {
-        Self { has_unknown_scale: true, ..self }
+        Self { length_unit: SpacingUnit::Voxels, ..self }
     }
 
     /// Whether lengths are in voxels because nobody knows how large these are.
     pub fn has_unknown_scale(&self) -> bool {
-        self.has_unknown_scale
+        self.length_unit == SpacingUnit::Voxels
     }
 
     /// States what a user should know of how the file was read.
@@ -248,7 +248,7 @@ impl Volume {
             unit_mm: whole.unit_mm,
             is_anatomical: whole.is_anatomical,
             hints: whole.hints.clone(),
-            has_unknown_scale: whole.has_unknown_scale,
+            length_unit: whole.length_unit,
             remarks: whole.remarks.clone(),
             held: Arc::clone(&whole.held),
             kind: whole.kind_of_parts(),

@@ -8,7 +8,7 @@ use chiaroscuro::model::{
 use chiaroscuro::reference::{Fault, Options, Reference};
 use glam::DVec3;
 
-use super::presence::{two_lobes, waves};
+use super::presence::{thin_waves, two_lobes, waves};
 use crate::common::{Dataset, attenuation, context, render};
 use crate::compare::{compare, flat32, flat64, wide};
 use crate::scenes;
@@ -122,7 +122,7 @@ fn reference_weights_not_divided() {
 fn ends_of_data_that_are_not_seen() {
     let presence = "return presence_at(ray.origin + ray.direction * depth, kernel_level(frame, depth));";
     let faces = "let faces = face_gradient(eye.faces, p, level);";
-    let holes = "+ presence_slope(p, level);";
+    let holes = "+ rising;";
     let look = two_lobes();
     for (has_missing, from, to) in [
         (false, presence, "return 1.0;"),
@@ -135,6 +135,10 @@ fn ends_of_data_that_are_not_seen() {
             disagree_about(volume, &look, from, to, Fault::None),
             "the comparison does not notice {to:?} for {from:?}"
         );
+    }
+    // Two faces that are within reach of one kernel, of which only one is asked.
+    for (from, is_noticed) in [("#if FACES > 1", true), ("\u{0}", false)] {
+        assert_eq!(disagree_about(thin_waves(), &look, from, "#if FACES > 2", Fault::None), is_noticed);
     }
     for has_missing in [false, true] {
         assert!(!disagree_about(waves(20, DVec3::ONE, has_missing), &look, "\u{0}", "", Fault::None));

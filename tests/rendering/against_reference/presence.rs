@@ -31,6 +31,13 @@ pub(super) fn waves(n: usize, spacing_mm: DVec3, has_missing: bool) -> Volume {
     Volume::with_spacing("waves", [n; 3], spacing_mm, Samples::F32(values)).expect("a volume")
 }
 
+/// The first slices of them, between two of whose faces a kernel has no room.
+pub(super) fn thin_waves() -> Volume {
+    let Samples::U8(values) = waves(20, DVec3::ONE, false).samples().clone() else { panic!("eight bits") };
+    let thin = Samples::U8(values[..20 * 20 * 2].to_vec());
+    Volume::with_spacing("thin waves", [20, 20, 2], DVec3::ONE, thin).expect("a volume")
+}
+
 /// Both lobes of a signed field are shown, and nothing between them: the lowest value is opaque.
 pub(super) fn two_lobes() -> Settings {
     let point = |value, color, opacity| ControlPoint::new(value, color, opacity);
@@ -62,6 +69,7 @@ fn scattered() -> Settings {
 #[test]
 fn waves_end_with_the_grid() {
     check_volume("waves", waves(20, DVec3::ONE, false), &gathered(), Some(round_to_f16));
+    check_volume("thin waves", thin_waves(), &gathered(), Some(round_to_f16));
     let mut settings = gathered();
     settings.lights = vec![scenes::light(LightKind::Perspective, [1.6, -1.2, 2.2])];
     settings.sampling.kernel = Kernel::Gaussian { sigma: 0.6 };

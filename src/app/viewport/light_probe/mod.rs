@@ -136,7 +136,7 @@ impl LightProbe {
 
 /// The unit of lengths in a volume.
 fn unit_of(volume: &Volume) -> LengthUnit {
-    LengthUnit::showing(volume.scene().mm_per_unit, volume.has_unknown_scale())
+    LengthUnit::of(volume.length_unit())
 }
 
 /// A line between two places, and how long it is.

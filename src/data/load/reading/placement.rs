@@ -19,6 +19,8 @@ pub(in crate::data::load) struct Placement {
     pub(in crate::data::load) is_anatomical: bool,
     /// Whether the file says how large voxels are; else they are 1, and nobody knows of what.
     pub(in crate::data::load) is_scale_known: bool,
+    /// Millimetres of the unit in which the file says lengths.
+    pub(in crate::data::load) length_unit_mm: f64,
     /// What was mended, for the user.
     pub(in crate::data::load) remarks: Vec<String>,
 }
@@ -30,6 +32,7 @@ impl Placement {
             world_from_index: DAffine3::IDENTITY,
             is_anatomical: false,
             is_scale_known: false,
+            length_unit_mm: 1.0,
             remarks: Vec::new(),
         }
     }
@@ -39,7 +42,7 @@ impl Placement {
         let mut remarks = Vec::new();
         let spacing_mm = mended(spacing_mm, &mut remarks);
         let world_from_index = DAffine3::from_mat3(DMat3::from_diagonal(spacing_mm));
-        Self { world_from_index, is_anatomical: false, is_scale_known: true, remarks }
+        Self { world_from_index, remarks, is_scale_known: true, ..Self::unknown() }
     }
 
     /// Voxels that lie as a file's affine says, in right-anterior-superior millimetres. Where it has no three usable axes,
@@ -48,7 +51,7 @@ impl Placement {
         let axes = world_from_index.matrix3;
         let lengths = [axes.x_axis, axes.y_axis, axes.z_axis].map(DVec3::length);
         if is_usable_affine(&world_from_index) && unlike_spacings(lengths).is_none() {
-            return Self { world_from_index, is_anatomical: true, is_scale_known: true, remarks: Vec::new() };
+            return Self { world_from_index, is_anatomical: true, is_scale_known: true, ..Self::unknown() };
         }
         let mut placement = Self::spaced(lengths);
         placement
@@ -73,6 +76,12 @@ impl Placement {
     #[must_use]
     pub(in crate::data::load) fn of_unknown_scale(self) -> Self {
         Self { is_scale_known: false, ..self }
+    }
+
+    /// The same where the file says lengths in a unit of so many millimetres.
+    #[must_use]
+    pub(in crate::data::load) fn said_in(self, length_unit_mm: f64) -> Self {
+        Self { length_unit_mm, ..self }
     }
 
     /// The same with something that the user is told.
@@ -140,6 +149,7 @@ impl Parts {
                 let volume = if read.is_all() { volume } else { volume.kept_of_file(&read) };
                 let volume = volume.with_anatomy(placement.is_anatomical).with_hints(hints.clone());
                 let volume = volume.with_remarks(placement.remarks.clone());
+                let volume = volume.said_in_units_of(placement.length_unit_mm);
                 if placement.is_scale_known { volume } else { volume.with_unknown_scale() }
             });
             made.and_then(|volume| match volume.hints().padding {

@@ -76,9 +76,10 @@ impl Volume {
             None => opened.is_anatomical,
             Some(orientation) => orientation != Orientation::Unknown,
         };
-        volume.has_unknown_scale = match by.unit {
-            None => opened.has_unknown_scale && by.spacing.is_none(),
-            Some(unit) => unit == SpacingUnit::Voxels,
+        volume.length_unit = match by.unit {
+            None if opened.has_unknown_scale() && by.spacing.is_some() => SpacingUnit::Mm,
+            None => opened.length_unit,
+            Some(unit) => unit,
         };
         // What is said of a volume differs with all of them, and whatever is kept of it goes with what identifies it.
         let words = format!("{by:?}");

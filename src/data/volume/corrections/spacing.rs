@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Deserializer, Serialize};
 
+use crate::data::volume::Volume;
+
 /// The unit of distances between voxels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -45,6 +47,11 @@ impl SpacingUnit {
         }
     }
 
+    /// The one that is so long.
+    fn of_mm(mm: f64) -> Option<Self> {
+        Self::ALL.into_iter().find(|unit| *unit != Self::Voxels && unit.mm().to_bits() == mm.to_bits())
+    }
+
     /// The one in which distances between voxels are said: down to a hundredth of a millimetre there are digits enough
     /// behind the point.
     pub fn of_spacing(spacing_mm: [f64; 3]) -> Self {
@@ -60,6 +67,27 @@ impl SpacingUnit {
             Self::Cm => "cm",
             Self::M => "m",
             Self::Voxels => "voxels",
+        }
+    }
+}
+
+/// From a ten-thousandth of a length on, its number in a unit has more digits than anybody reads.
+const MOST_UNITS: f64 = 1e4;
+
+impl Volume {
+    /// States in which unit its file has lengths, by its millimetres; what is no known unit says nothing.
+    #[must_use]
+    pub fn said_in_units_of(self, mm: f64) -> Self {
+        Self { length_unit: SpacingUnit::of_mm(mm).unwrap_or(self.length_unit), ..self }
+    }
+
+    /// The unit in which lengths as long as the object are said: that of the file, if it has one that suits them.
+    pub fn length_unit(&self) -> SpacingUnit {
+        let length_mm = self.scene().mm_per_unit;
+        match self.length_unit {
+            SpacingUnit::Voxels => SpacingUnit::Voxels,
+            unit if (1.0..=MOST_UNITS).contains(&(length_mm / unit.mm())) => unit,
+            _ => SpacingUnit::showing(length_mm),
         }
     }
 }
@@ -94,7 +122,10 @@ fn numbers(text: &str) -> Option<[f64; 3]> {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
+    use crate::data::Samples;
 
     #[test]
     fn distances_are_said_in_units_that_suit_them() {
@@ -107,5 +138,17 @@ mod tests {
             assert_eq!(SpacingUnit::of_spacing(spacing), unit, "{spacing:?}");
         }
         assert_eq!(SpacingUnit::showing(0.5), SpacingUnit::Um);
+    }
+
+    #[test]
+    fn lengths_are_said_in_the_unit_of_the_file_where_it_suits_them() {
+        let of = |spacing_mm: f64, unit_mm: f64| {
+            let samples = Samples::U8((0..64).collect());
+            let volume = Volume::with_spacing("t", [4; 3], DVec3::splat(spacing_mm), samples).unwrap();
+            volume.said_in_units_of(unit_mm).length_unit()
+        };
+        assert_eq!([of(20.0, 10.0), of(20.0, 1e3), of(2e3, 1e3)], [SpacingUnit::Cm, SpacingUnit::Mm, SpacingUnit::M]);
+        assert_eq!([of(1.0, 1e-3), of(1.0, 1e-6), of(1e-3, 1.0)], [SpacingUnit::Um, SpacingUnit::Mm, SpacingUnit::Um]);
+        assert_eq!(of(20.0, 25.4), SpacingUnit::Mm, "inches are not known");
     }
 }

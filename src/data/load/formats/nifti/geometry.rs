@@ -21,7 +21,7 @@ pub(super) fn placement(header: &Header, dims: [u64; 3]) -> Placement {
         }
         let placed = Placement::ras(DAffine3::from_scale(DVec3::splat(mm)) * affine);
         if placed.is_anatomical {
-            return Placement { remarks, ..placed };
+            return Placement { remarks, ..placed }.said_in(mm);
         }
         remarks.push(format!("the header's {name} is unusable"));
     }
@@ -34,7 +34,7 @@ pub(super) fn placement(header: &Header, dims: [u64; 3]) -> Placement {
     let is_default = unit_mm.is_none() && spacing.iter().all(|&length| length == 0.0 || length == 1.0);
     let placed = if is_default { Placement::unknown() } else { Placement::spaced(spacing.map(|n| n * mm)) };
     remarks.extend(placed.remarks);
-    Placement { remarks, ..placed }
+    Placement { remarks, ..placed }.said_in(mm)
 }
 
 /// Millimetres of the unit of lengths, where there is one (`NIFTI_UNITS_METER`, `_MM`, `_MICRON`).

@@ -77,6 +77,8 @@ impl Geometry {
         let size = |axis: usize| spatial.get(axis).map_or(1, |axis| axis.size);
         let dims = [size(0), size(1), size(2)];
         let placement = placement(attempt, header, &spatial)?;
+        let unit = mm_per_unit(header, "space units").or_else(|| mm_per_unit(header, "units"));
+        let placement = placement.said_in(unit.unwrap_or(1.0));
         let placement = if counts_voxels(header) { placement.of_unknown_scale() } else { placement };
 
         let before: Vec<&Axis> = all.iter().take_while(|axis| !axis.spatial).collect();

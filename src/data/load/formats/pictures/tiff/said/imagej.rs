@@ -146,7 +146,7 @@ fn place(tiff: &mut Tiff, said: &Said<'_>) -> Placement {
     let lengths = [across.unwrap_or(1.0), down.or(across).unwrap_or(1.0), deep.unwrap_or(1.0)];
     match said.text("unit").and_then(millimetres) {
         Some(unit) if across.is_some() => {
-            let mut placement = Placement::spaced(lengths.map(|length| length * unit));
+            let mut placement = Placement::spaced(lengths.map(|length| length * unit)).said_in(unit);
             if deep.is_none() {
                 placement
                     .remarks

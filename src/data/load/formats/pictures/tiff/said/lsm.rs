@@ -51,7 +51,7 @@ impl Info {
     ) -> Result<Stack, LoadError> {
         let is_length = |length: &f64| length.is_finite() && *length > 0.0;
         let mut placement = if self.spacing.iter().all(is_length) {
-            Placement::spaced(self.spacing.map(|length| length * 1e3))
+            Placement::spaced(self.spacing.map(|length| length * 1e3)).said_in(1e-3)
         } else {
             Placement::unknown()
         };

@@ -221,11 +221,11 @@ fn place(pixels: Node<'_, '_>) -> Placement {
     let length = |axis: &str| {
         let length = number::<f64>(pixels, &format!("PhysicalSize{axis}"))?;
         // The model's own default.
-        let unit = pixels.attribute(format!("PhysicalSize{axis}Unit").as_str()).unwrap_or("µm");
-        Some(length * millimetres(unit)?).filter(|length| length.is_finite() && *length > 0.0)
+        let unit_mm = millimetres(pixels.attribute(format!("PhysicalSize{axis}Unit").as_str()).unwrap_or("µm"))?;
+        Some((length * unit_mm, unit_mm)).filter(|(length, _)| length.is_finite() && *length > 0.0)
     };
     match (length("X"), length("Y"), length("Z")) {
-        (Some(x), Some(y), Some(z)) => Placement::spaced([x, y, z]),
+        (Some((x, unit_mm)), Some((y, _)), Some((z, _))) => Placement::spaced([x, y, z]).said_in(unit_mm),
         _ => Placement::unknown(),
     }
 }
