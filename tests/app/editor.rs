@@ -33,6 +33,19 @@ fn the_transfer_function_is_edited_in_its_plot() {
     wait_until_idle(&mut harness);
 }
 
+/// The chain between the curves gives light one of its own, and takes it back.
+#[test]
+fn a_chain_links_the_curves() {
+    let mut harness = window();
+    let is_linked = |harness: &Harness<'_, App>| harness.state().settings().lighting.linked;
+    assert!(is_linked(&harness));
+    for wanted in [false, true] {
+        click(&mut harness, "Link the curves of eye and light");
+        assert_eq!(is_linked(&harness), wanted);
+    }
+    wait_until_idle(&mut harness);
+}
+
 #[test]
 fn the_whole_curve_is_colored_moved_and_replaced() {
     let mut harness = window();

@@ -5,11 +5,13 @@ use std::time::{Duration, Instant};
 use chiaroscuro::app::{App, Options};
 use chiaroscuro::gpu::{LightSearch, Open, Sought, finish_look, first_look};
 use chiaroscuro::model::Settings;
-use eframe::egui::{self, Modifiers};
+use eframe::egui::{self, Modifiers, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{PATIENCE, SCENE, beside, click, untouched_window, wait_until, wait_until_idle, window};
+use crate::harness::{
+    PATIENCE, SCENE, beside, click, untouched_window, wait_until, wait_until_idle, window, window_with,
+};
 
 /// Waits for a picture of a contact sheet.
 fn wait_for(harness: &mut Harness<'_, App>, label: &str) {
@@ -126,4 +128,43 @@ fn looks_that_were_tried_are_forgotten_with_their_volume() {
     harness.state_mut().open("builtin:sphere:16", &ctx);
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("sphere") && app.is_idle());
     assert_eq!(harness.query_all_by_label_contains("Use 1").count(), 0, "it was of the volume before");
+}
+
+/// A little CT: a ball of bone in one of water, in air.
+fn ct(folder: &std::path::Path) -> std::path::PathBuf {
+    let mut file =
+        "NRRD0004\ntype: int16\ndimension: 3\nsizes: 24 24 24\nspacings: 4 4 4\nendian: little\nencoding: raw\nsample units: \"HU\"\n\n".as_bytes().to_vec();
+    for at in 0..24_i32.pow(3) {
+        let away = [at % 24, at / 24 % 24, at / 576].map(|place| f64::from(place) - 11.5);
+        let radius = away.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let value: i16 = if radius < 4.0 {
+            900
+        } else if radius < 9.0 {
+            40
+        } else {
+            -1000
+        };
+        file.extend(value.to_le_bytes());
+    }
+    let path = folder.join("ct.nrrd");
+    std::fs::write(&path, file).expect("a file");
+    path
+}
+
+/// What is looked for in a CT is offered over its picture, and over no other, until somebody closes that.
+#[test]
+fn looks_of_a_ct_are_offered_over_its_picture() {
+    assert!(window().query_by_label("Lung").is_none());
+    let folder = tempfile::tempdir().expect("a folder");
+    let options = Options { source: Some(ct(folder.path())), ..Options::default() };
+    let mut harness = window_with(options, vec2(760.0, 1140.0));
+    let before = harness.state().settings().clone();
+    click(&mut harness, "Muscle and skin");
+    wait_until_idle(&mut harness);
+    let bone = harness.state().settings().clone();
+    assert_ne!(bone.transfer, before.transfer);
+    assert_eq!(bone.camera, before.camera);
+    click(&mut harness, "Close this row; presets stay in the editor");
+    assert!(harness.query_by_label("Muscle and skin").is_none());
+    wait_until_idle(&mut harness);
 }

@@ -99,11 +99,15 @@ mod tests {
 
     #[test]
     fn what_is_kept_of_a_layout_is_found_again() {
-        let mut layout = Layout { side: false, ..Layout::default() };
+        let mut layout = Layout { side: false, slices: true, ..Layout::default() };
         layout.picture_only = true;
         let text = serde_json::to_string(&layout).unwrap();
         let again: Layout = serde_json::from_str(&text).unwrap();
-        assert_eq!(again, Layout { side: false, ..Layout::default() }, "and the panels are there");
+        assert_eq!(
+            again,
+            Layout { side: false, slices: true, ..Layout::default() },
+            "and the panels are there"
+        );
         let newer: Layout = serde_json::from_str(r#"{"transfer": false, "more": 1}"#).unwrap();
         assert!(newer.side && !newer.transfer);
     }

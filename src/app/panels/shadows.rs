@@ -10,8 +10,8 @@ use crate::app::common::commands::Command;
 use crate::app::common::theme;
 use crate::app::viewport::LightCost;
 use crate::model::{
-    Deposit, LightShape, LightStorage, MAX_LEAST_BLOCKS, MAX_LIGHT_SAMPLES, NearField, Precision, Quality, Resolution,
-    ReverseKernel, ShadowAlgorithm,
+    Deposit, LightShape, LightStorage, MAX_LEAST_BLOCKS, MAX_LIGHT_SAMPLES, NearField, Precision, Quality,
+    Resolution, ReverseKernel, ShadowAlgorithm,
 };
 
 /// From this share of black the meter warns: a third of the picture tells nothing any more.
@@ -120,10 +120,10 @@ fn at_resolution(cost: LightCost, measured: Resolution, wanted: Resolution) -> S
 /// How finely points are lit.
 fn resolution(ui: &mut Ui, panels: &mut Panels<'_>) {
     let (lights, measured) = (&panels.settings.lights, panels.settings.shadows.resolution);
-    let cost = panels.facts.cost_of(|at| lights.get(at).is_some_and(|light| light.shape == LightShape::Point));
-    let cost_of = |&wanted: &Resolution| {
-        Some(text::shadows::volume_cost(&at_resolution(cost?, measured, wanted)))
-    };
+    let cost =
+        panels.facts.cost_of(|at| lights.get(at).is_some_and(|light| light.shape == LightShape::Point));
+    let cost_of =
+        |&wanted: &Resolution| Some(text::shadows::volume_cost(&at_resolution(cost?, measured, wanted)));
     let resolution = &mut panels.settings.shadows.resolution;
     choice_with(ui, text::shadows::RESOLUTION, resolution, &RESOLUTIONS, cost_of);
 }
@@ -132,7 +132,8 @@ fn resolution(ui: &mut Ui, panels: &mut Panels<'_>) {
 fn area_resolution(ui: &mut Ui, panels: &mut Panels<'_>) {
     let (lights, shadows) = (&panels.settings.lights, &panels.settings.shadows);
     let dims = panels.volume.map(|volume| volume.dims);
-    let cost = panels.facts.cost_of(|at| lights.get(at).is_some_and(|light| light.shape != LightShape::Point));
+    let cost =
+        panels.facts.cost_of(|at| lights.get(at).is_some_and(|light| light.shape != LightShape::Point));
     let (points, least) = (shadows.resolution, shadows.least_blocks);
     let used = |resolution: Resolution| Some(points.max(resolution.with_blocks(dims?, least)));
     let measured = used(shadows.area.resolution);

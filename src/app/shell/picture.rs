@@ -155,7 +155,8 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
     }
     if overlay.on {
         light_chips::show(ui, canvas.rect, settings, selected_light, facts, commands);
-        if is_one_view {
+        // The first hints of all lie there.
+        if is_one_view && !hints.on {
             ct_looks.show(ui, canvas.rect, volume, commands);
         }
     }

@@ -13,6 +13,13 @@ pub(crate) const LIGHT: Named = named("Light", "Edit what light meets");
 /// Instead of the tip, while light meets what the eye sees.
 pub(crate) const LINKED_TIP: &str =
     "Light meets the opacity that the eye sees; a click gives it a curve of its own";
+/// The chain between them.
+pub(crate) const LINK: Named = named(
+    "Link the curves of eye and light",
+    "Lets light meet the opacity that the eye sees again; its own curve is kept",
+);
+pub(crate) const UNLINK_TIP: &str =
+    "Light meets the opacity that the eye sees. A click gives it a curve of its own";
 pub(crate) const HINT: &str = "Click adds a point, a drag selects, the wheel zooms";
 
 /// What screen readers call the points of either curve, before their number.

@@ -6,6 +6,7 @@
 mod backdrop;
 mod fields;
 mod freehand;
+mod link;
 mod menus;
 mod plot;
 mod selection;
@@ -124,7 +125,9 @@ impl TransferEditor {
         });
         if !is_wide {
             let row = Vec2::new(ui.available_width(), ui.spacing().interact_size.y);
-            ui.allocate_ui_with_layout(row, from_the_right, |ui| self.plot_tools(ui, settings, &volume.kind, commands));
+            ui.allocate_ui_with_layout(row, from_the_right, |ui| {
+                self.plot_tools(ui, settings, &volume.kind, commands)
+            });
         }
         let size = ui.available_size();
         let (area, response) = ui.allocate_exact_size(size.max(Vec2::splat(20.0)), Sense::click_and_drag());
@@ -161,6 +164,7 @@ impl TransferEditor {
         let before = self.curve;
         let eye = ui.selectable_value(&mut self.curve, Curve::Eye, text::transfer::EYE.name);
         eye.on_hover_text(text::transfer::EYE.tip);
+        link::show(ui, settings);
         let light = ui.selectable_value(&mut self.curve, Curve::Light, text::transfer::LIGHT.name);
         let is_linked = settings.lighting.linked;
         let tip = if is_linked { text::transfer::LINKED_TIP } else { text::transfer::LIGHT.tip };

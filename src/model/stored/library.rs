@@ -151,6 +151,14 @@ mod tests {
     use crate::model::DensityRange;
 
     #[test]
+    fn presets_of_ct_suit_hounsfield_units_alone() {
+        let bone = Preset::find("ct/bone").unwrap();
+        assert!(bone.suits(&DataKind::HounsfieldCt { water: 0.0 }));
+        assert!(!bone.suits(&DataKind::HounsfieldCt { water: 1024.0 }) && !bone.suits(&DataKind::Scalar));
+        assert!(Preset::find("mr/head").unwrap().suits(&DataKind::Scalar));
+    }
+
+    #[test]
     fn presets_are_valid_understood_and_show_something() {
         for preset in PRESETS {
             let overlay: Value = serde_json::from_str(preset.text).unwrap();

@@ -159,6 +159,8 @@ fn steps_are_listed_and_gone_to() {
     harness.run_steps(4);
     let start = settings(&harness);
     assert_eq!((start.floor.on, &start.camera), (first.floor.on, &first.camera));
+    // Said over the picture for a while, and in the status bar until something is changed.
+    assert_eq!(harness.query_all_by_label_contains("Undone: ").count(), 2);
     click(&mut harness, "2  view");
     harness.run_steps(4);
     assert_eq!(settings(&harness).camera, last.camera);
@@ -275,8 +277,12 @@ fn views_from_the_sides_show_all_of_the_object() {
 fn small_and_large_windows_have_a_picture_and_all_panels() {
     let mut harness = window();
     harness.key_press_modifiers(Modifiers::SHIFT, Key::V);
-    for size in [[640.0, 400.0], [1280.0, 800.0], [3840.0, 2160.0]] {
+    // The last is a screen of 3840 × 2160 pixels at scale 2.
+    for (size, scale) in
+        [([640.0, 400.0], 1.0), ([1280.0, 800.0], 1.0), ([3840.0, 2160.0], 1.0), ([1920.0, 1080.0], 2.0)]
+    {
         harness.input_mut().max_texture_side = Some(8192);
+        harness.set_pixels_per_point(scale);
         harness.set_size(size.into());
         harness.run_steps(8);
         wait_until_idle(&mut harness);
@@ -284,7 +290,7 @@ fn small_and_large_windows_have_a_picture_and_all_panels() {
         let (picture, pixels) = harness.state().viewport_rect().expect("a picture");
         assert!(window.contains_rect(picture), "{size:?}: {picture}");
         assert!(picture.width() > 0.4 * size[0] && picture.height() > 0.1 * size[1], "{size:?}: {picture}");
-        assert_eq!(pixels[0], picture.width().round() as u32, "{size:?}: as fine as the screen");
+        assert_eq!(pixels[0], (scale * picture.width()).round() as u32, "{size:?}: as fine as the screen");
         for label in ["File", "Help", "Eye", "+ View"] {
             let part = harness.get_by_label(label).rect();
             assert!(window.contains_rect(part), "{size:?}: {label} at {part}");

@@ -2,11 +2,12 @@
 
 use chiaroscuro::app::{App, Options};
 use chiaroscuro::model::{Settings, SkyMode};
-use eframe::egui::{Event, Key, Modifiers, Rect, Vec2, pos2, vec2};
+use eframe::egui::{Event, Key, Modifiers, Rect, Role, Vec2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::{SCENE, drag, wait_until_idle, window_with};
+use crate::names::unfolded;
 
 /// A window whose first look is changed.
 fn window(change: fn(&mut Settings)) -> Harness<'static, App> {
@@ -101,4 +102,28 @@ fn steps_of_the_history_have_names() {
     harness.run_steps(3);
     assert_eq!(harness.state().latest_note(), Some("Redone: floor"));
     wait_until_idle(&mut harness);
+}
+
+/// What soft light takes is measured, and said at its other resolutions before one is chosen.
+#[test]
+fn tips_say_what_other_resolutions_of_soft_light_take() {
+    let mut harness = unfolded(700.0);
+    let mut tips = Vec::new();
+    for on in ["White", "Bounces"] {
+        match on {
+            "Bounces" => harness.get_by_role_and_label(Role::Slider, on).set_value_accesskit(1.0),
+            _ => harness.get_by_label(on).click(),
+        }
+        harness.run_steps(4);
+        wait_until_idle(&mut harness);
+    }
+    for at in 0..harness.get_all_by_label("Quarter").count() {
+        let place = harness.get_all_by_label("Quarter").nth(at).expect("as many as before").rect();
+        harness.hover_at(place.center());
+        harness.run_steps(12);
+        tips.extend(harness.query_all_by_label_contains(" about ").map(|tip| format!("{tip:?}")));
+    }
+    let saying = |words: &str| tips.iter().filter(|tip| tip.contains(words)).count();
+    assert!(saying("Each light volume takes about ") >= 1, "{tips:#?}");
+    assert!(saying("Takes about ") >= 2, "of the sky, and of bounces: {tips:#?}");
 }

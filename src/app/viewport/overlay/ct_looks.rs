@@ -14,8 +14,9 @@ use crate::model::PRESETS;
 const HEIGHT: f32 = 30.0;
 const FOOT: f32 = 34.0;
 
-/// Points beside the words.
+/// Points beside the words, and between them.
 const MARGIN: f32 = 10.0;
+const GAP: f32 = 14.0;
 
 /// What it was closed for.
 #[derive(Debug, Default)]
@@ -32,20 +33,20 @@ impl CtLooks {
         volume: &VolumeFacts,
         commands: &mut Vec<Command>,
     ) {
-        let presets = PRESETS.into_iter().filter(|preset| preset.domain() == "ct" && preset.suits(&volume.kind));
+        let presets =
+            PRESETS.into_iter().filter(|preset| preset.domain() == "ct" && preset.suits(&volume.kind));
         let presets: Vec<_> = presets.collect();
         if presets.is_empty() || self.closed_for.as_ref() == Some(&volume.source) {
             return;
         }
         let font = egui::TextStyle::Button.resolve(ui.style());
-        let (padding, gap) = (2.0 * ui.spacing().button_padding.x, ui.spacing().item_spacing.x);
         let width_of = |words: &str| {
             let laid = ui.painter().layout_no_wrap(words.to_owned(), font.clone(), theme::EYE_CURVE);
-            laid.size().x + padding + gap
+            laid.size().x + GAP
         };
         let titles: f32 = presets.iter().map(|preset| width_of(&preset.title())).sum();
         let width = width_of(text::picture::CT_LOOKS) + titles + width_of(text::picture::CLOSE_CT_LOOKS_SIGN);
-        let size = vec2(width + 2.0 * MARGIN, HEIGHT);
+        let size = vec2(width - GAP + 2.0 * MARGIN, HEIGHT);
         if picture.width() < size.x + 2.0 * MARGIN || picture.height() < 8.0 * HEIGHT {
             return;
         }
@@ -55,6 +56,7 @@ impl CtLooks {
         let layout = Layout::left_to_right(Align::Center);
         let inside = area.shrink2(vec2(MARGIN, 0.0));
         let mut ui = ui.new_child(UiBuilder::new().max_rect(inside).layout(layout).id_salt("ct looks"));
+        ui.spacing_mut().item_spacing.x = GAP;
         ui.label(RichText::new(text::picture::CT_LOOKS).color(theme::EYE_CURVE));
         for preset in presets {
             let title = RichText::new(preset.title()).color(theme::ACCENT);

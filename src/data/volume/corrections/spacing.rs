@@ -147,8 +147,14 @@ mod tests {
             let volume = Volume::with_spacing("t", [4; 3], DVec3::splat(spacing_mm), samples).unwrap();
             volume.said_in_units_of(unit_mm).length_unit()
         };
-        assert_eq!([of(20.0, 10.0), of(20.0, 1e3), of(2e3, 1e3)], [SpacingUnit::Cm, SpacingUnit::Mm, SpacingUnit::M]);
-        assert_eq!([of(1.0, 1e-3), of(1.0, 1e-6), of(1e-3, 1.0)], [SpacingUnit::Um, SpacingUnit::Mm, SpacingUnit::Um]);
+        assert_eq!(
+            [of(20.0, 10.0), of(20.0, 1e3), of(2e3, 1e3)],
+            [SpacingUnit::Cm, SpacingUnit::Mm, SpacingUnit::M]
+        );
+        assert_eq!(
+            [of(1.0, 1e-3), of(1.0, 1e-6), of(1e-3, 1.0)],
+            [SpacingUnit::Um, SpacingUnit::Mm, SpacingUnit::Um]
+        );
         assert_eq!(of(20.0, 25.4), SpacingUnit::Mm, "inches are not known");
     }
 }

@@ -221,7 +221,8 @@ fn place(pixels: Node<'_, '_>) -> Placement {
     let length = |axis: &str| {
         let length = number::<f64>(pixels, &format!("PhysicalSize{axis}"))?;
         // The model's own default.
-        let unit_mm = millimetres(pixels.attribute(format!("PhysicalSize{axis}Unit").as_str()).unwrap_or("µm"))?;
+        let unit_mm =
+            millimetres(pixels.attribute(format!("PhysicalSize{axis}Unit").as_str()).unwrap_or("µm"))?;
         Some((length * unit_mm, unit_mm)).filter(|(length, _)| length.is_finite() && *length > 0.0)
     };
     match (length("X"), length("Y"), length("Z")) {

@@ -1,0 +1,64 @@
+//! The chain between the curves of eye and light: closed while light meets what the eye sees.
+
+use eframe::egui::{self, Pos2, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, vec2};
+use std::f32::consts::{PI, TAU};
+
+use super::super::text;
+use crate::app::common::theme;
+use crate::app::panels::set_linked;
+use crate::model::Settings;
+
+/// Points of the button, of half a link's length without its round ends, and of those.
+const SIZE: Vec2 = Vec2::new(20.0, 18.0);
+const HALF: f32 = 2.0;
+const ROUND: f32 = 2.8;
+
+/// Shows it; a click links the curves or gives light one of its own.
+pub(super) fn show(ui: &mut Ui, settings: &mut Settings) {
+    let is_linked = settings.lighting.linked;
+    let (rect, response) = ui.allocate_exact_size(SIZE, Sense::click());
+    let named = text::transfer::LINK;
+    response.widget_info(|| WidgetInfo::selected(egui::Role::CheckBox, true, is_linked, named.name));
+    let ink = if response.hovered() || response.has_focus() {
+        ui.visuals().strong_text_color()
+    } else if is_linked {
+        theme::accent(ui.visuals())
+    } else {
+        ui.visuals().weak_text_color()
+    };
+    // Links that hold each other, or have come apart.
+    let apart = if is_linked { 3.0 } else { 5.5 };
+    for side in [-1.0, 1.0] {
+        let middle = rect.center() + vec2(side * apart, 0.0);
+        ui.painter().add(Shape::closed_line(link(middle), Stroke::new(1.4, ink)));
+    }
+    let tip = if is_linked { text::transfer::UNLINK_TIP } else { named.tip };
+    if response.on_hover_text(tip).clicked() {
+        set_linked(settings, !is_linked);
+    }
+}
+
+/// A link that lies on its side.
+fn link(middle: Pos2) -> Vec<Pos2> {
+    let half_circle = |from: f32, x: f32| {
+        (0..=8).map(move |at| {
+            let (sine, cosine) = (from + PI * at as f32 / 8.0).sin_cos();
+            middle + vec2(x + ROUND * cosine, ROUND * sine)
+        })
+    };
+    half_circle(0.75 * TAU, HALF).chain(half_circle(0.25 * TAU, -HALF)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use eframe::egui::Rect;
+
+    use super::*;
+
+    #[test]
+    fn links_reach_into_each_other() {
+        let bounds = Rect::from_points(&link(Pos2::ZERO));
+        assert!((bounds.width() - 2.0 * (HALF + ROUND)).abs() < 1e-3, "{bounds:?}");
+        assert!((bounds.height() - 2.0 * ROUND).abs() < 1e-3 && bounds.center().distance(Pos2::ZERO) < 1e-3);
+    }
+}
