@@ -20,7 +20,7 @@ const MOST_COMPONENTS: u64 = 1 << 10;
 /// Axes without a kind that may hold colours: of red, green, blue and opacity.
 const MOST_COLORS: u64 = 4;
 
-/// Kinds of axes that hold components or times, not places.
+/// Kinds of axes that hold components or, the first two, times or what else is listed; not places.
 const OTHER_KINDS: [&str; 11] = [
     "time",
     "list",
@@ -44,8 +44,10 @@ pub(super) struct Geometry {
     /// Voxels along the three axes, not yet checked.
     pub(super) dims: [u64; 3],
     pub(super) placement: Placement,
-    /// Numbers beside each other that a voxel has.
+    /// Numbers that a voxel has.
     pub(super) components: usize,
+    /// Whether they lie behind each other, a whole volume of each.
+    pub(super) are_planes: bool,
     pub(super) is_color: bool,
     /// Whether those numbers are time steps, and not components.
     pub(super) are_times: bool,
@@ -68,6 +70,13 @@ struct Axis {
     spacing_mm: f64,
 }
 
+impl Axis {
+    /// Whether the header says that it holds numbers of one voxel.
+    fn is_of_components(&self) -> bool {
+        !self.spatial && OTHER_KINDS[2..].iter().any(|kind| self.kind.ends_with(kind))
+    }
+}
+
 impl Geometry {
     pub(super) fn from_header(attempt: Attempt<'_>, header: &Header) -> Result<Self, LoadError> {
         let all = axes(attempt, header)?;
@@ -79,13 +88,17 @@ impl Geometry {
         let placement = placement(attempt, header, &spatial)?;
         let unit = mm_per_unit(header, "space units").or_else(|| mm_per_unit(header, "units"));
         let placement = placement.said_in(unit.unwrap_or(1.0));
-        let placement = if counts_voxels(header) { placement.of_unknown_scale() } else { placement };
+        // All distances 1 of nothing are what is written where nobody knows how large voxels are.
+        let says_nothing = unit.is_none() && !placement.is_anatomical && placement.has_unit_steps();
+        let is_unknown = says_nothing || counts_voxels(header);
+        let placement = if is_unknown { placement.of_unknown_scale() } else { placement };
 
         let before: Vec<&Axis> = all.iter().take_while(|axis| !axis.spatial).collect();
-        let behind = all.iter().rev().take_while(|axis| !axis.spatial);
-        let product = |size: u64, axis: &Axis| size.saturating_mul(axis.size);
-        let components = before.iter().fold(1, |size, axis| product(size, axis));
-        let frames = behind.fold(1, product);
+        let behind: Vec<&Axis> = all.iter().rev().take_while(|axis| !axis.spatial).collect();
+        let are_planes = before.is_empty() && !behind.is_empty() && behind.iter().all(|axis| axis.is_of_components());
+        let (before, behind) = if are_planes { (behind, before) } else { (before, behind) };
+        let product = |axes: &[&Axis]| axes.iter().fold(1_u64, |size, axis| size.saturating_mul(axis.size));
+        let (components, frames) = (product(&before), product(&behind));
         if components == 0 || frames == 0 {
             let why = "an axis that is none of space has no samples: 1 or more were expected, 0 was found";
             return Err(attempt.bad_input("sizes", why.to_owned(), "correct the header"));
@@ -103,6 +116,7 @@ impl Geometry {
             dims,
             placement,
             components: components as usize,
+            are_planes,
             is_color: before.iter().any(|axis| COLORS.contains(&axis.kind.as_str())),
             are_times: before.iter().any(|axis| axis.kind == "time"),
             frames,

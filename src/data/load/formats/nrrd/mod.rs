@@ -2,7 +2,7 @@
 //!
 //! After the definition at <https://teem.sourceforge.net/nrrd/format.html>, versions 1 to 5. World space is
 //! right-anterior-superior millimetres. An axis that is none of space is one of components where it is the fastest,
-//! and one of time steps where it is the slowest.
+//! and one of time steps where it is the slowest, unless its kind says that it is one of components.
 
 mod data;
 mod files;
@@ -10,6 +10,7 @@ mod geometry;
 mod header;
 mod hints;
 mod layout;
+mod planes;
 mod space;
 #[cfg(test)]
 mod tests;
@@ -24,6 +25,7 @@ use super::samples::{Fault, Layout};
 use super::voxels::Meant;
 use super::{Dimension, Endian, LoadError, LoadOptions, Offer};
 use crate::data::attempt::{Attempt, Extent};
+use crate::data::load::human_bytes;
 use crate::data::{Meaning, Volume, plain};
 use data::{Data, HELP, Place};
 use geometry::Geometry;
@@ -53,12 +55,21 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     let (frame, part) = chosen(attempt, &geometry, storage.number, is_layered, options)?;
     // Numbers in text are made little-endian, and those of one byte need no order.
     let endian = storage.endian.filter(|_| storage.encoding != Encoding::Text).unwrap_or(Endian::Little);
-    let stored = Stored { number: storage.number, endian, components: geometry.components, part };
+    // One of several planes is read as if it was a time step.
+    let (frame, frames, stored) = match part {
+        Part::Component(plane) if geometry.are_planes => {
+            (plane as u64, geometry.components as u64, Stored::scalar(storage.number, endian))
+        }
+        _ => {
+            let stored = Stored { number: storage.number, endian, components: geometry.components, part };
+            (frame, geometry.frames, stored)
+        }
+    };
     let extent =
         Extent::checked(attempt, "sizes", geometry.dims, stored.voxel_type(), options.room(control))?;
     let bytes_of_frame = (extent.voxels as u64)
         .checked_mul(stored.bytes_of_voxel())
-        .filter(|bytes| bytes.checked_mul(geometry.frames).is_some())
+        .filter(|bytes| bytes.checked_mul(frames).is_some())
         .ok_or_else(|| attempt.limit("sizes", "all time steps have more than 2^64 bytes", HELP))?;
 
     let places = match files::names(attempt, &header, &geometry.sizes)? {
@@ -68,12 +79,21 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
             .map(|name| beside::resolve(attempt, files::FIELD, name).map(Place::Detached))
             .collect::<Result<_, _>>()?,
     };
-    let bytes_of_file = bytes_of_frame * geometry.frames / places.len() as u64;
+    let bytes_of_file = bytes_of_frame * frames / places.len() as u64;
     let mut data = Data::new(places, storage, bytes_of_file, control);
-    let read = data.skip(frame * bytes_of_frame).map_err(Fault::Io);
     let layout = Layout { extent, voxel_type: stored.voxel_type(), endian };
     let meant = Meant::as_stored(hints.padding);
-    let voxels = read.and_then(|()| stored.read_meant(&mut data, Some(Data::leap), extent, &meant, control));
+    let voxels = if geometry.are_planes && stored.components > 1 {
+        if bytes_of_frame > options.memory_budget_bytes {
+            let what = format!("{} of all components are more than there is memory", human_bytes(bytes_of_frame.into()));
+            return Err(attempt.limit("sizes", what, "name one with --component"));
+        }
+        planes::side_by_side(&mut data, &stored, extent.voxels, control)
+            .and_then(|bytes| stored.read_meant(&mut bytes.as_slice(), None, extent, &meant, control))
+    } else {
+        let read = data.skip(frame * bytes_of_frame).map_err(Fault::Io);
+        read.and_then(|()| stored.read_meant(&mut data, Some(Data::leap), extent, &meant, control))
+    };
     let voxels = voxels.map_err(|fault| match data.failure.take() {
         Some(failure) => failure,
         None => fault.into_error(attempt, &layout, "bytes", HELP),

@@ -42,6 +42,23 @@ pub(in crate::data::load::formats::dicom) enum Codec {
     Jpeg2000,
 }
 
+/// A syntax that is not read: its name, and what helps.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(in crate::data::load::formats::dicom) struct NotRead {
+    pub(in crate::data::load::formats::dicom) name: String,
+    pub(in crate::data::load::formats::dicom) help: &'static str,
+}
+
+/// Where tools of every system know it.
+const CONVERT: &str = "convert it with `gdcmconv --raw in.dcm out.dcm`";
+
+/// Where they do not.
+const ASK: &str = "ask who sent it for pixels without compression (Explicit VR Little Endian)";
+
+/// Films within files.
+const FRAMES: &str =
+    "take its pictures out: `gdcmraw -i in.dcm -o film.mpg`, `ffmpeg -i film.mpg %04d.png`, and open their folder";
+
 /// A transfer syntax.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(in crate::data::load::formats::dicom) struct Syntax {
@@ -49,8 +66,8 @@ pub(in crate::data::load::formats::dicom) struct Syntax {
     pub(in crate::data::load::formats::dicom) is_deflated: bool,
     /// Pixels are in fragments.
     pub(in crate::data::load::formats::dicom) is_encapsulated: bool,
-    /// `Err` with its name where it is not read.
-    pub(in crate::data::load::formats::dicom) codec: Result<Codec, String>,
+    /// `Err` where it is not read.
+    pub(in crate::data::load::formats::dicom) codec: Result<Codec, NotRead>,
 }
 
 impl Syntax {
@@ -69,7 +86,7 @@ impl Syntax {
             codec: Ok(codec),
         };
         let Some(rest) = uid.strip_prefix("1.2.840.10008.1.2") else {
-            return Self::refused(uid, "a private syntax");
+            return Self::refused(uid, "a private syntax", ASK);
         };
         match rest {
             "" => native(Form::IMPLICIT),
@@ -81,20 +98,20 @@ impl Syntax {
             ".4.50" | ".4.51" | ".4.57" | ".4.70" => encapsulated(Codec::Jpeg),
             ".4.80" | ".4.81" => encapsulated(Codec::JpegLs),
             ".4.90" | ".4.91" => encapsulated(Codec::Jpeg2000),
-            ".4.92" | ".4.93" => Self::refused(uid, "JPEG 2000 of several components"),
-            ".4.94" | ".4.95" | ".4.204" | ".4.205" => Self::refused(uid, "pixels on a server (JPIP)"),
-            ".4.201" | ".4.202" | ".4.203" => Self::refused(uid, "High-Throughput JPEG 2000"),
-            ".4.110" | ".4.111" | ".4.112" => Self::refused(uid, "JPEG XL"),
-            _ if rest.starts_with(".4.10") => Self::refused(uid, "a film (MPEG)"),
-            _ if rest.starts_with(".4.") => Self::refused(uid, "a rare kind of JPEG"),
-            _ => Self::refused(uid, "a syntax that is not known"),
+            ".4.92" | ".4.93" => Self::refused(uid, "JPEG 2000 of several components", CONVERT),
+            ".4.94" | ".4.95" | ".4.204" | ".4.205" => Self::refused(uid, "pixels on a server (JPIP)", ASK),
+            ".4.201" | ".4.202" | ".4.203" => Self::refused(uid, "High-Throughput JPEG 2000", ASK),
+            ".4.110" | ".4.111" | ".4.112" => Self::refused(uid, "JPEG XL", ASK),
+            _ if rest.starts_with(".4.10") => Self::refused(uid, "a film (MPEG)", FRAMES),
+            _ if rest.starts_with(".4.") => Self::refused(uid, "a rare kind of JPEG", CONVERT),
+            _ => Self::refused(uid, "a syntax that is not known", ASK),
         }
     }
 
     /// Its header is read as nearly all are written; its pixels are not.
-    fn refused(uid: &str, name: &str) -> Self {
+    fn refused(uid: &str, name: &str, help: &'static str) -> Self {
         let name = format!("{name}, {}", crate::data::plain(uid, 64));
-        Self { form: Form::EXPLICIT, is_deflated: false, is_encapsulated: true, codec: Err(name) }
+        Self { form: Form::EXPLICIT, is_deflated: false, is_encapsulated: true, codec: Err(NotRead { name, help }) }
     }
 }
 
@@ -120,7 +137,7 @@ mod tests {
             ("1.2.840.113619.5.2", "private"),
             ("", "private"),
         ] {
-            assert!(Syntax::of(uid).codec.unwrap_err().contains(name), "{uid}");
+            assert!(Syntax::of(uid).codec.unwrap_err().name.contains(name), "{uid}");
         }
     }
 

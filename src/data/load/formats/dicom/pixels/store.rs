@@ -4,7 +4,7 @@ use std::io::{self, Read as _};
 
 use super::super::header::Header;
 use super::super::header::bytes::Bytes;
-use super::super::header::syntax::Codec;
+use super::super::header::syntax::{Codec, NotRead};
 use super::super::header::tags::{ITEM, SEQUENCE_END};
 use super::super::header::walk::PixelElement;
 use super::codec::{Unpacked, unpack};
@@ -60,11 +60,11 @@ impl Store {
         let Some(pixels) = header.pixels else {
             return Err(attempt.bad_input("Pixel Data", "it has no pixels", HELP_COPY));
         };
-        let codec = header.syntax.codec.as_ref().map_err(|name| {
+        let codec = header.syntax.codec.as_ref().map_err(|NotRead { name, help }| {
             attempt.bad_input(
                 "Transfer Syntax",
                 format!("its pixels are compressed in a way that is not read: {name}"),
-                "convert it with `gdcmconv --raw in.dcm out.dcm`",
+                *help,
             )
         })?;
         if pixels.length.is_none() {

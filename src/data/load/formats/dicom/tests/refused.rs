@@ -14,14 +14,15 @@ fn files_without_pictures_say_what_they_are() {
 
 #[test]
 fn kinds_that_are_not_read_are_named_with_what_helps() {
-    for (syntax, words) in [
-        ("1.2.840.10008.1.2.4.201", "High-Throughput JPEG 2000"),
-        ("1.2.840.10008.1.2.4.110", "JPEG XL"),
-        ("1.2.840.10008.1.2.4.102", "film"),
-        ("1.2.3", "private"),
+    for (syntax, words, help) in [
+        ("1.2.840.10008.1.2.4.201", "High-Throughput JPEG 2000", "without compression"),
+        ("1.2.840.10008.1.2.4.110", "JPEG XL", "without compression"),
+        ("1.2.840.10008.1.2.4.102", "film", "gdcmraw"),
+        ("1.2.840.10008.1.2.4.52", "rare kind", "gdcmconv --raw"),
+        ("1.2.3", "private", "without compression"),
     ] {
         let file = File::new(syntax).fragments(&[&[], &[0; 8]]);
-        assert_refused(file.load(), LoadErrorKind::BadInput, &[words, "gdcmconv --raw", "Transfer Syntax"]);
+        assert_refused(file.load(), LoadErrorKind::BadInput, &[words, help, "Transfer Syntax"]);
     }
     let mask = File::new(EXPLICIT).bits(1, 1, false).load();
     assert_refused(mask, LoadErrorKind::BadInput, &["segmentations", "segimage2itkimage"]);

@@ -105,6 +105,23 @@ fn the_fastest_axis_holds_components() {
 }
 
 #[test]
+fn components_behind_each_other_are_no_time_steps() {
+    // 3, 4 and 0, then 0, −12 and 5: a plane of each component.
+    let planes: Vec<u8> = [3i16, 0, 4, -12, 0, 5].iter().flat_map(|value| value.to_be_bytes()).collect();
+    let fields =
+        ["dimension: 4", "sizes: 2 1 1 3", "type: int16", "endian: big", "kinds: space space space vector"];
+    let lengths = load(&fields, &planes, Choice::default()).unwrap();
+    assert_eq!((lengths.dims(), lengths.samples()), ([2, 1, 1], &Samples::F32(vec![5.0, 13.0])));
+    assert_eq!(*load(&fields, &planes, component(1)).unwrap().samples(), Samples::I16(vec![4, -12]));
+    assert_refused(load(&fields, &planes[..11], Choice::default()), LoadErrorKind::BadInput, &["truncated"]);
+    assert_refused(load(&fields, &planes, component(3)), LoadErrorKind::BadInput, &["0 to 2"]);
+    let colors = ["dimension: 4", "sizes: 2 1 1 3", "kinds: domain domain domain RGB-color"];
+    let light = load(&colors, &[255, 0, 255, 0, 255, 0], Choice::default()).unwrap();
+    assert_eq!(*light.samples(), Samples::U8(vec![255, 0]));
+    assert!(light.remarks()[0].contains("luminance"));
+}
+
+#[test]
 fn times_beside_each_other_are_time_steps_too() {
     let fields = ["dimension: 4", "sizes: 2 2 2 1", "kinds: time domain domain domain"];
     let bytes: Vec<u8> = (0..8).collect();

@@ -72,6 +72,10 @@ fn sizes_channels_and_light_are_understood() {
     let flat = "DimensionOrder=\"XYZCT\" SizeZ=\"2\" SizeC=\"1\" SizeT=\"1\" PhysicalSizeX=\"1\" PhysicalSizeY=\"1\"";
     let volume = load_bytes(&file(&document(&image("", flat, "")), 2)).unwrap();
     assert!(volume.has_unknown_scale() && volume.hints().is_empty() && volume.name() == "stack");
+    assert!(volume.remarks().is_empty());
+    let wrong = format!("{flat} PhysicalSizeZ=\"-2\"");
+    let volume = load_bytes(&file(&document(&image("", &wrong, "")), 2)).unwrap();
+    assert!(volume.has_unknown_scale() && volume.remarks()[0].contains("PhysicalSize"));
 }
 
 #[test]
