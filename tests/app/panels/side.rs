@@ -117,6 +117,11 @@ fn tips_say_what_other_resolutions_of_soft_light_take() {
         harness.run_steps(4);
         wait_until_idle(&mut harness);
     }
+    // What was switched off could not be unfolded.
+    for at in 0..harness.get_all_by_label("Advanced").count() {
+        harness.get_all_by_label("Advanced").nth(at).expect("as many as before").click();
+        harness.run_steps(8);
+    }
     for at in 0..harness.get_all_by_label("Quarter").count() {
         let place = harness.get_all_by_label("Quarter").nth(at).expect("as many as before").rect();
         harness.hover_at(place.center());

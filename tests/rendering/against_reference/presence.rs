@@ -31,11 +31,11 @@ pub(super) fn waves(n: usize, spacing_mm: DVec3, has_missing: bool) -> Volume {
     Volume::with_spacing("waves", [n; 3], spacing_mm, Samples::F32(values)).expect("a volume")
 }
 
-/// The first slices of them, between two of whose faces a kernel has no room.
+/// The first slice of them, between two of whose faces a kernel has no room.
 pub(super) fn thin_waves() -> Volume {
     let Samples::U8(values) = waves(20, DVec3::ONE, false).samples().clone() else { panic!("eight bits") };
-    let thin = Samples::U8(values[..20 * 20 * 2].to_vec());
-    Volume::with_spacing("thin waves", [20, 20, 2], DVec3::ONE, thin).expect("a volume")
+    let thin = Samples::U8(values[..20 * 20].to_vec());
+    Volume::with_spacing("thin waves", [20, 20, 1], DVec3::ONE, thin).expect("a volume")
 }
 
 /// Both lobes of a signed field are shown, and nothing between them: the lowest value is opaque.
