@@ -82,6 +82,7 @@ fn lights_are_suggested() {
     click(&mut harness, "Suggest…");
     wait_for(&mut harness, "Again, as it looks now");
     assert_eq!(harness.state().settings(), &before, "trying changes nothing");
+    assert!(harness.query_by_label("Use As it is").is_some(), "what they are compared with");
     click(&mut harness, "Use Key, suggestion 2");
     let after = harness.state().settings().clone();
     assert_ne!(after.lights[0].position, before.lights[0].position);

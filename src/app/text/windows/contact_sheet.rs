@@ -23,6 +23,9 @@ pub(crate) const USE_TIP: &str = "Use it";
 /// Why no light is suggested.
 pub(crate) const NO_LIGHT: &str = "There is no light to be placed: add one, or select one";
 
+/// What suggestions are compared with.
+pub(crate) const AS_IT_IS: &str = "As it is";
+
 /// A place for a light, from 1: the best first.
 pub(crate) fn suggestion(light: &str, number: usize) -> String {
     format!("{light}, suggestion {number}")

@@ -73,13 +73,22 @@ impl Sheet {
     ) -> Result<(), String> {
         let is_wanted = || !is_unwanted.load(Ordering::Relaxed);
         let mut worker = Worker::new(subject)?;
+        let mut shown = 0;
+        if self == Self::Suggestions && subject.settings.lights.get(subject.selected_light).is_some() {
+            // The search takes longer than anybody likes to look at nothing; and this is what it is to be better than.
+            let Settings { lights, .. } = subject.settings.clone();
+            let now = with(text::contact_sheet::AS_IT_IS.to_owned(), lights, &subject.settings);
+            let picture = small_picture(&mut worker, subject, &closer(&now.settings, subject))?;
+            hand_on(0, (now, picture));
+            shown = 1;
+        }
         let candidates = match self {
             Self::Lights => with_lights(&subject.settings, subject.selected_light),
             Self::Presets => with_presets(&subject.settings, subject.dataset.volume()),
             Self::Suggestions => suggested(subject, &worker, &is_wanted)?,
             Self::Looks => return looks(subject, &mut worker, &is_wanted, hand_on),
         };
-        let count = candidates.len();
+        let count = shown + candidates.len();
         for candidate in candidates.into_iter().take_while(|_| is_wanted()) {
             let picture = small_picture(&mut worker, subject, &closer(&candidate.settings, subject))?;
             hand_on(count, (candidate, picture));
