@@ -135,6 +135,10 @@ impl Tool {
         let builder = UiBuilder::new().layer_id(LayerId::background()).max_rect(place);
         let mut ui = Ui::new(ctx.clone(), Id::unique((self.title, "docked")), builder);
         ui.set_clip_rect(place);
+        // It lies below all windows, and belongs to the pointer that is over it.
+        if ui.rect_contains_pointer(place) && frame::is_for_picture(ctx) {
+            *open = false;
+        }
         ui.horizontal(|ui| {
             ui.set_height(HEADER - 6.0);
             ui.label(RichText::new(self.title).strong());

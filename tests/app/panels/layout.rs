@@ -76,6 +76,20 @@ fn tools_are_docked_beside_the_picture_and_float_again() {
     harness.run_steps(4);
     assert_eq!(picture_of(&harness), usual);
     assert!(harness.query_by_label("Slice across z").is_some(), "and it is still open");
+    // Escape closes what the pointer is over.
+    click(&mut harness, "Dock Slices beside the picture");
+    harness.run_steps(4);
+    harness.hover_at(picture_of(&harness).center());
+    harness.step();
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    assert_eq!(picture_of(&harness), beside, "over the picture it is for the picture");
+    let slice = harness.get_by_label("Slice across z").rect();
+    harness.hover_at(slice.center());
+    harness.step();
+    harness.key_press(Key::Escape);
+    harness.run_steps(4);
+    assert_eq!(picture_of(&harness), usual);
     wait_until_idle(&mut harness);
 }
 
