@@ -137,8 +137,10 @@ fn ends_of_data_that_are_not_seen() {
         );
     }
     // Two faces that are within reach of one kernel, of which only one is asked.
-    for (from, is_noticed) in [("#if FACES > 1", true), ("\u{0}", false)] {
-        assert_eq!(disagree_about(thin_waves(), &look, from, "#if FACES > 2", Fault::None), is_noticed);
+    let both = "max(shares_inside(before / width) + shares_inside(behind / width) - 1.0, vec3f(0.0))";
+    for (from, is_noticed) in [(both, true), ("\u{0}", false)] {
+        let nearer = "shares_inside(min(before, behind) / width)";
+        assert_eq!(disagree_about(thin_waves(), &look, from, nearer, Fault::None), is_noticed);
     }
     for has_missing in [false, true] {
         assert!(!disagree_about(waves(20, DVec3::ONE, has_missing), &look, "\u{0}", "", Fault::None));

@@ -95,7 +95,8 @@ impl Geometry {
 
         let before: Vec<&Axis> = all.iter().take_while(|axis| !axis.spatial).collect();
         let behind: Vec<&Axis> = all.iter().rev().take_while(|axis| !axis.spatial).collect();
-        let are_planes = before.is_empty() && !behind.is_empty() && behind.iter().all(|axis| axis.is_of_components());
+        let are_planes =
+            before.is_empty() && !behind.is_empty() && behind.iter().all(|axis| axis.is_of_components());
         let (before, behind) = if are_planes { (behind, before) } else { (before, behind) };
         let product = |axes: &[&Axis]| axes.iter().fold(1_u64, |size, axis| size.saturating_mul(axis.size));
         let (components, frames) = (product(&before), product(&behind));

@@ -85,7 +85,10 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     let meant = Meant::as_stored(hints.padding);
     let voxels = if geometry.are_planes && stored.components > 1 {
         if bytes_of_frame > options.memory_budget_bytes {
-            let what = format!("{} of all components are more than there is memory", human_bytes(bytes_of_frame.into()));
+            let what = format!(
+                "{} of all components are more than there is memory",
+                human_bytes(bytes_of_frame.into())
+            );
             return Err(attempt.limit("sizes", what, "name one with --component"));
         }
         planes::side_by_side(&mut data, &stored, extent.voxels, control)

@@ -56,8 +56,7 @@ const CONVERT: &str = "convert it with `gdcmconv --raw in.dcm out.dcm`";
 const ASK: &str = "ask who sent it for pixels without compression (Explicit VR Little Endian)";
 
 /// Films within files.
-const FRAMES: &str =
-    "take its pictures out: `gdcmraw -i in.dcm -o film.mpg`, `ffmpeg -i film.mpg %04d.png`, and open their folder";
+const FRAMES: &str = "take its pictures out: `gdcmraw -i in.dcm -o film.mpg`, `ffmpeg -i film.mpg %04d.png`, and open their folder";
 
 /// A transfer syntax.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -111,7 +110,12 @@ impl Syntax {
     /// Its header is read as nearly all are written; its pixels are not.
     fn refused(uid: &str, name: &str, help: &'static str) -> Self {
         let name = format!("{name}, {}", crate::data::plain(uid, 64));
-        Self { form: Form::EXPLICIT, is_deflated: false, is_encapsulated: true, codec: Err(NotRead { name, help }) }
+        Self {
+            form: Form::EXPLICIT,
+            is_deflated: false,
+            is_encapsulated: true,
+            codec: Err(NotRead { name, help }),
+        }
     }
 }
 

@@ -228,7 +228,8 @@ fn place(pixels: Node<'_, '_>) -> Placement {
     match (length("X"), length("Y"), length("Z")) {
         (Some((x, unit_mm)), Some((y, _)), Some((z, _))) => Placement::spaced([x, y, z]).said_in(unit_mm),
         _ => {
-            let is_said = ["PhysicalSizeX", "PhysicalSizeY", "PhysicalSizeZ"].map(|size| pixels.has_attribute(size));
+            let is_said =
+                ["PhysicalSizeX", "PhysicalSizeY", "PhysicalSizeZ"].map(|size| pixels.has_attribute(size));
             // One of two, as of a picture that has no depth, is nothing that cannot be.
             let is_wrong = is_said == [true; 3];
             let remark = is_wrong.then_some("its PhysicalSize cannot be: how large voxels are is not known");
