@@ -126,7 +126,7 @@ impl TransferEditor {
         if !is_wide {
             let row = Vec2::new(ui.available_width(), ui.spacing().interact_size.y);
             ui.allocate_ui_with_layout(row, from_the_right, |ui| {
-                self.plot_tools(ui, settings, &volume.kind, commands)
+                self.plot_tools(ui, settings, &volume.kind, commands);
             });
         }
         let size = ui.available_size();

@@ -12,7 +12,7 @@ use crate::gpu::{Context, GpuError};
 use crate::model::{BakedTransfer, COLORS, Settings};
 use crate::plan::{BrickSet, CellDistances, CellSet, CellsAhead, TablesKey};
 
-/// Voxels between opposite faces from which on no kernel that is not stretched reaches both: EDGE_REACH in
+/// Voxels between opposite faces from which on no kernel that is not stretched reaches both: `EDGE_REACH` in
 /// `shaders/density/presence.wgsl`, twice.
 const KERNEL_AT_FACES: f64 = 3.0;
 

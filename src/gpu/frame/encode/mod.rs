@@ -239,8 +239,9 @@ impl Job<'_> {
         step: BounceStep,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let slot = self.bounces.slot.and_then(|slot| self.loaded.value.bounces.get_mut(slot));
-        slot.into_iter().for_each(|bounces| bounces.value.fill.begin());
+        if let Some(bounces) = self.bounces.slot.and_then(|slot| self.loaded.value.bounces.get_mut(slot)) {
+            bounces.value.fill.begin();
+        }
         let loaded = &self.loaded.value;
         let Some(build) = &self.bounces.build else { return Ok(()) };
         let bytes = self.targets.bytes() + loaded.bytes() + self.tools.pool.bytes() + build.bytes();
@@ -263,8 +264,9 @@ impl Job<'_> {
         batch: Option<usize>,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let slot = self.sky.slot.and_then(|slot| self.loaded.value.skies.get_mut(slot));
-        slot.into_iter().for_each(|sky| sky.value.fill.begin());
+        if let Some(sky) = self.sky.slot.and_then(|slot| self.loaded.value.skies.get_mut(slot)) {
+            sky.value.fill.begin();
+        }
         let loaded = &self.loaded.value;
         let Some(build) = &self.sky.build else { return Ok(()) };
         let bytes = self.targets.bytes() + loaded.bytes() + self.tools.pool.bytes() + build.bytes();

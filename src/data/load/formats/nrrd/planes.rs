@@ -22,7 +22,7 @@ pub(super) fn side_by_side(
     let (size, voxel) = (stored.number.bytes(), stored.bytes_of_voxel() as usize);
     let length = voxels.checked_mul(voxel).ok_or(Fault::NoMemory)?;
     let mut bytes = Vec::new();
-    bytes.try_reserve_exact(length).map_err(|_| Fault::NoMemory)?;
+    bytes.try_reserve_exact(length).map_err(|_none| Fault::NoMemory)?;
     bytes.resize(length, 0);
     let mut block = vec![0; VOXELS * size];
     let mut passed = 0;

@@ -6,11 +6,11 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use hayro_jpeg2000::{DecodeSettings, DecoderContext, Image};
-use jpeg_decoder::{CodingProcess, ColorTransform, Decoder, PixelFormat};
+use jpeg_decoder::{CodingProcess, ColorTransform, Decoder, Error, PixelFormat, UnsupportedFeature};
 
 use super::super::header::syntax::Codec;
-use super::rle;
 use super::shape::{Colors, Shape};
+use super::{extended, rle};
 use crate::data::plain;
 
 /// A picture without compression: numbers with their lowest byte first, the colours of a pixel side by side.
@@ -60,15 +60,14 @@ fn check_size(found: [u64; 2], shape: &Shape) -> Result<(), String> {
     Err(format!("a picture has {x} x {y} pixels where the header says {columns} x {rows}"))
 }
 
-/// ITU-T T.81: sequential of 8 bits, progressive, and lossless up to 16 bits.
+/// ITU-T T.81: sequential of 8 and 12 bits, progressive, and lossless up to 16 bits.
 fn jpeg(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
     let mut decoder = Decoder::new(packed);
-    decoder.read_info().map_err(|error| match error {
-        jpeg_decoder::Error::Unsupported(jpeg_decoder::UnsupportedFeature::SamplePrecision(bits)) => {
-            format!("JPEG of {bits} bits with loss (JPEG Extended, 1.2.840.10008.1.2.4.51) is not read")
-        }
-        error => broken(error),
-    })?;
+    match decoder.read_info() {
+        Ok(()) => {}
+        Err(Error::Unsupported(UnsupportedFeature::SamplePrecision(12))) => return extended(packed, shape),
+        Err(error) => return Err(broken(error)),
+    }
     let Some(info) = decoder.info() else { return Err(broken("it has no size")) };
     check_size([info.width.into(), info.height.into()], &shape)?;
     let samples = match info.pixel_format {
@@ -106,6 +105,18 @@ fn jpeg(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
         }
     };
     checked(bytes, Shape { colors, ..shape })
+}
+
+/// The same of 12 bits with loss (JPEG Extended, 1.2.840.10008.1.2.4.51).
+fn extended(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
+    let header = extended::header(packed).map_err(broken)?;
+    check_size([header.width as u64, header.height as u64], &shape)?;
+    if header.components != shape.samples {
+        let (found, samples) = (header.components, shape.samples);
+        return Err(format!("a picture has {found} numbers a pixel where the header says {samples}"));
+    }
+    let numbers = extended::decode(packed).map_err(broken)?.numbers;
+    checked(contained(numbers.into_iter().map(u32::from), shape.bytes()), shape)
 }
 
 /// ITU-T T.87, of one number a pixel.

@@ -1,6 +1,7 @@
 //! Pixels: how they are stored, where they are, how they are unpacked, and what voxels they become.
 
 mod codec;
+mod extended;
 pub(super) mod raster;
 mod rle;
 pub(super) mod shape;

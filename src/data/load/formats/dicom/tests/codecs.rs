@@ -4,6 +4,7 @@ use super::*;
 
 const JPEG_LOSSLESS: &str = "1.2.840.10008.1.2.4.70";
 const JPEG_BASELINE: &str = "1.2.840.10008.1.2.4.50";
+const JPEG_EXTENDED: &str = "1.2.840.10008.1.2.4.51";
 const JPEG_LS: &str = "1.2.840.10008.1.2.4.80";
 const JPEG_2000: &str = "1.2.840.10008.1.2.4.90";
 
@@ -31,6 +32,13 @@ const LOSSY: &str = "ffd8ffe000104a46494600010100000100010000ffdb004300010101010
     01010101010101010101010101010101010101010101010101010101010101010101010101ffc0000b080004000501011100ffc4\
     0014000100000000000000000000000000000009ffc4001f100001000b0000000000000000000000000200050708091627435253\
     65ffda0008010100003f00401894249c82520a5fa2fabf03e4a7ffd9";
+
+/// 12 bits with hardly any loss.
+const EXTENDED: &str = "ffd8ffe000104a46494600010100000100010000ffdb004300010101010101010101010101010101010101010101010101010101\
+    01010101010101010101010101010101010101010101010101010101010101010101010101ffc1000b0c0004000501011100ffc4\
+    001400010000000000000000000000000000000cffc40027100000010a0603000000000000000000001202040507090a0b111317\
+    06080c0e1415161822ffda0008010100003f004b26cfc16a2e71992da4858f9fe922c521595ff7c821dd5cd11b9e9cf776a99a8f\
+    9d785cb80934503adb918b2756b8b9ff0014825d4fffd9";
 
 fn hex(text: &str) -> Vec<u8> {
     let digits = text.as_bytes().as_chunks::<2>().0.iter();
@@ -75,6 +83,16 @@ fn compression_with_loss_is_near() {
     for at in 0..20 {
         let expected = (at * 10 + 20) as f64;
         assert!((volume.samples().value(at) - expected).abs() <= 1.0, "{at}");
+    }
+    let volume = file(JPEG_EXTENDED, false, &[&[], &hex(EXTENDED)]).bits(16, 12, false).load().unwrap();
+    let rows = [
+        [0, 300, 900, 2000, 4095],
+        [10, 310, 910, 2010, 4000],
+        [20, 320, 920, 2020, 3900],
+        [30, 330, 930, 2030, 3800],
+    ];
+    for (at, expected) in rows.into_iter().flatten().enumerate() {
+        assert!((volume.samples().value(at) - f64::from(expected)).abs() <= 1.0, "{at}");
     }
 }
 
@@ -136,10 +154,12 @@ fn pictures_that_are_not_what_the_header_says_are_refused() {
     ] {
         assert_refused(file.load(), LoadErrorKind::BadInput, &[words]);
     }
-    // A picture of 12 bits with loss: the first bytes of one.
+    // Of 12 bits with loss: the first bytes of one, and another size.
     let twelve = [0xff, 0xd8, 0xff, 0xc1, 0, 11, 12, 0, 4, 0, 5, 1, 1, 0x11, 0, 0];
-    let twelve = file(JPEG_BASELINE, false, &[&[], &twelve]);
-    assert_refused(twelve.load(), LoadErrorKind::BadInput, &["12 bits with loss", "gdcmconv --raw"]);
+    let twelve = file(JPEG_EXTENDED, false, &[&[], &twelve]);
+    assert_refused(twelve.load(), LoadErrorKind::BadInput, &["cut off", "gdcmconv --raw"]);
+    let twelve = file(JPEG_EXTENDED, false, &[&[], &hex(EXTENDED)]).size(4, 4);
+    assert_refused(twelve.load(), LoadErrorKind::BadInput, &["5 x 4 pixels where the header says 4 x 4"]);
 }
 
 /// Decoders take time and memory for as many pixels as are announced, whatever there is.
@@ -153,7 +173,9 @@ fn bombs_are_refused_before_there_is_room_for_them() {
 
 #[test]
 fn half_a_picture_is_none() {
-    for (syntax, picture) in [(JPEG_LOSSLESS, LOSSLESS), (JPEG_LS, LS), (JPEG_2000, SIGNED)] {
+    for (syntax, picture) in
+        [(JPEG_LOSSLESS, LOSSLESS), (JPEG_EXTENDED, EXTENDED), (JPEG_LS, LS), (JPEG_2000, SIGNED)]
+    {
         let picture = hex(picture);
         let half = file(syntax, true, &[&[], &picture[..picture.len() / 8 * 6]]);
         assert_refused(half.load(), LoadErrorKind::BadInput, &["Pixel Data, frame 0"]);

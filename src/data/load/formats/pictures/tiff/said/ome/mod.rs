@@ -225,17 +225,14 @@ fn place(pixels: Node<'_, '_>) -> Placement {
             millimetres(pixels.attribute(format!("PhysicalSize{axis}Unit").as_str()).unwrap_or("µm"))?;
         Some((length * unit_mm, unit_mm)).filter(|(length, _)| length.is_finite() && *length > 0.0)
     };
-    match (length("X"), length("Y"), length("Z")) {
-        (Some((x, unit_mm)), Some((y, _)), Some((z, _))) => Placement::spaced([x, y, z]).said_in(unit_mm),
-        _ => {
-            let is_said =
-                ["PhysicalSizeX", "PhysicalSizeY", "PhysicalSizeZ"].map(|size| pixels.has_attribute(size));
-            // One of two, as of a picture that has no depth, is nothing that cannot be.
-            let is_wrong = is_said == [true; 3];
-            let remark = is_wrong.then_some("its PhysicalSize cannot be: how large voxels are is not known");
-            Placement::unknown().remarked(remark)
-        }
+    if let (Some((x, unit_mm)), Some((y, _)), Some((z, _))) = (length("X"), length("Y"), length("Z")) {
+        return Placement::spaced([x, y, z]).said_in(unit_mm);
     }
+    // Two of them, as a picture without depth has them, are nothing that cannot be.
+    let all = ["PhysicalSizeX", "PhysicalSizeY", "PhysicalSizeZ"];
+    let is_wrong = all.iter().all(|size| pixels.has_attribute(*size));
+    let remark = is_wrong.then_some("its PhysicalSize cannot be: how large voxels are is not known");
+    Placement::unknown().remarked(remark)
 }
 
 /// What is said of how it was recorded.

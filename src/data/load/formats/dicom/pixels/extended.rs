@@ -1,0 +1,395 @@
+//! Sequential JPEG with loss, of 8 or 12 bits (ITU-T T.81, Huffman codes: SOF0 and SOF1), from a
+//! stream to numbers from 0 to 2^bits - 1; colours stay as they are stored.
+//!
+//! A stream is trusted in nothing: work and memory follow its length and the size that it says.
+
+use std::array::from_fn;
+use std::f64::consts::{PI, SQRT_2};
+use std::iter::repeat_n;
+
+/// Numbers of a block, row by row (T.81 section A.1.3).
+type Block = [[f64; 8]; 8];
+
+/// For each word of 16 bits, the length of the code that begins it and what that stands for; the
+/// last words may have none (T.81 annex C).
+type Codes = Vec<(u8, u8)>;
+
+/// Places of coefficients in a block, in the order of a stream (T.81 figure A.6).
+const ZIGZAG: [u8; 64] = [
+    0, 1, 8, 16, 9, 2, 3, 10, 17, 24, 32, 25, 18, 11, 4, 5, 12, 19, 26, 33, 40, 48, 41, 34, 27, 20, 13, 6, 7,
+    14, 21, 28, 35, 42, 49, 56, 57, 50, 43, 36, 29, 22, 15, 23, 30, 37, 44, 51, 58, 59, 52, 45, 38, 31, 39,
+    46, 53, 60, 61, 54, 47, 55, 62, 63,
+];
+
+/// What is said of a picture that ends before it is whole.
+const CUT: &str = "the picture is cut off, or broken before its last block";
+
+/// What a stream says of its picture: pixels, numbers of each (1 to 4) and their bits (8 or 12).
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Header {
+    pub(super) width: usize,
+    pub(super) height: usize,
+    pub(super) components: usize,
+    pub(super) bits: u32,
+    /// Whether it is extended (SOF1), not baseline (SOF0).
+    pub(super) is_extended: bool,
+}
+
+/// A picture without compression.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Picture {
+    pub(super) width: usize,
+    pub(super) height: usize,
+    pub(super) components: usize,
+    pub(super) bits: u32,
+    /// Row by row, those of a pixel side by side.
+    pub(super) numbers: Vec<u16>,
+}
+
+/// Reads a stream up to the size of its picture, or says what is wrong with it.
+pub(super) fn header(packed: &[u8]) -> Result<Header, String> {
+    let mut decoder = Decoder::new(packed)?;
+    while decoder.header.width == 0 {
+        decoder.read_segment()?;
+    }
+    Ok(decoder.header)
+}
+
+/// Decodes a picture, or says what is wrong with it; room is made for all that `header` says.
+pub(super) fn decode(packed: &[u8]) -> Result<Picture, String> {
+    let mut decoder = Decoder::new(packed)?;
+    while decoder.header.width == 0 || !decoder.parts.is_empty() {
+        decoder.read_segment()?;
+    }
+    let Header { width, height, components, bits, is_extended: _ } = decoder.header;
+    Ok(Picture { width, height, components, bits, numbers: decoder.numbers })
+}
+
+/// A component of the picture (T.81 section B.2.2).
+#[derive(Default)]
+struct Part {
+    id: u8,
+    /// Its place in a pixel.
+    place: usize,
+    /// Samples across and down, in proportion to those of other components.
+    factors: [usize; 2],
+    /// Blocks across and down that have samples.
+    blocks: [usize; 2],
+    /// Blocks across and down in each unit of its scan.
+    unit: [usize; 2],
+    /// Which table of steps is for it.
+    table: usize,
+    /// Steps of coefficients in the order of a stream, from its scan on.
+    steps: Vec<f64>,
+    /// Codes of means and of other coefficients, from its scan on.
+    codes: [Codes; 2],
+    /// The mean of the block before, in steps.
+    mean: i32,
+}
+
+/// A stream that is being decoded.
+#[derive(Default)]
+struct Decoder<'a> {
+    bits: Bits<'a>,
+    /// All 0 before it is read.
+    header: Header,
+    /// Components that no scan had yet.
+    parts: Vec<Part>,
+    /// The largest factors across and down.
+    most: [usize; 2],
+    /// Tables as they are stored: codes of means, codes of other coefficients, steps.
+    tables: [[&'a [u8]; 4]; 3],
+    /// Units between restarts, or 0.
+    interval: usize,
+    /// None before the first scan.
+    numbers: Vec<u16>,
+    /// Cosines by frequency and place (T.81 section A.3.3), 1 for frequency 0, so that whole
+    /// numbers stay whole; sums over both axes are 8 times too large.
+    waves: Block,
+}
+
+impl<'a> Decoder<'a> {
+    /// Begins after the marker at the start of all streams.
+    fn new(packed: &'a [u8]) -> Result<Self, String> {
+        let rest = packed.strip_prefix(b"\xff\xd8").ok_or("no picture of JPEG begins there")?;
+        let wave = |u: usize, x: usize| ((2 * x + 1) as f64 * u as f64 * PI / 16.0).cos();
+        let scaled = |u, x| if u == 0 { 1.0 } else { SQRT_2 * wave(u, x) };
+        let waves = from_fn(|u| from_fn(|x| scaled(u, x)));
+        Ok(Self { bits: Bits { rest, ..Bits::default() }, waves, ..Self::default() })
+    }
+
+    /// Reads a marker with its segment, and the scan after it if there is one (T.81 table B.1).
+    fn read_segment(&mut self) -> Result<(), String> {
+        let marker = self.bits.marker().ok_or(CUT)?;
+        let rest = self.bits.rest;
+        let length = rest.first_chunk().map_or(0, |&length| u16::from_be_bytes(length));
+        let (segment, rest) = rest.split_at_checked(length.into()).ok_or(CUT)?;
+        // The length counts its own two bytes.
+        let body = segment.get(2..).ok_or(CUT)?;
+        self.bits.rest = rest;
+        match marker {
+            0xc0 | 0xc1 if self.header.width > 0 => Err("the picture has two sizes")?,
+            0xc0 | 0xc1 => self.read_frame(marker, body)?,
+            0xc2 => Err("progressive JPEG is not read here")?,
+            0xc3 => Err("lossless JPEG is not read here")?,
+            0xc4 | 0xdb => self.read_tables(marker, body).ok_or("a table is broken")?,
+            0xc8..=0xcc => Err("JPEG with arithmetic codes is not read")?,
+            0xc5..=0xcf | 0xde | 0xdf => Err("hierarchical JPEG is not read")?,
+            0xda => self.read_scan(body)?,
+            0xdc => Err("JPEG whose height follows a scan is not read")?,
+            0xdd => self.interval = u16::from_be_bytes(*body.first_chunk().ok_or(CUT)?).into(),
+            // What programs add.
+            0xe0..=0xfe => {}
+            _ => Err(CUT)?,
+        }
+        Ok(())
+    }
+
+    /// Finds tables of codes or steps (T.81 sections B.2.4.1 and B.2.4.2).
+    fn read_tables(&mut self, marker: u8, mut body: &'a [u8]) -> Option<()> {
+        while let [kind, after @ ..] = body {
+            let (kind, place) = (usize::from(kind >> 4), usize::from(kind & 15));
+            let (row, length) = if marker == 0xdb {
+                (2, 64 * (kind + 1))
+            } else {
+                let counts = after.first_chunk::<16>()?.iter().map(|&count| usize::from(count));
+                (kind, 16 + counts.sum::<usize>())
+            };
+            let table;
+            (table, body) = after.split_at_checked(length).filter(|_| kind < 2)?;
+            *self.tables.get_mut(row)?.get_mut(place)? = table;
+        }
+        Some(())
+    }
+
+    /// Reads the size of the picture and its components (T.81 section B.2.2).
+    fn read_frame(&mut self, marker: u8, body: &[u8]) -> Result<(), String> {
+        let &[bits, y1, y0, x1, x0, count, ref named @ ..] = body else { Err(CUT)? };
+        let [width, height] = [[x1, x0], [y1, y0]].map(|two| usize::from(u16::from_be_bytes(two)));
+        let (named, after) = named.as_chunks::<3>();
+        let factors = named.iter().map(|[_, both, _]| [both >> 4, both & 15].map(usize::from));
+        let is_whole = after.is_empty() && named.len() == usize::from(count);
+        let is_known = matches!((bits, count), (8 | 12, 1..=4)) && width > 0 && height > 0;
+        if !is_whole || !is_known || !factors.clone().flatten().all(|n| matches!(n, 1..=4)) {
+            let size = format!("{width} x {height} pixels of {count} numbers of {bits} bits");
+            return Err(format!("JPEG with loss of {size} is not read, or broken"));
+        }
+        let [x, y] = factors.clone().fold([1, 1], |[x, y], [h, v]| [h.max(x), v.max(y)]);
+        for (place, (&[id, _, table], [h, v])) in named.iter().zip(factors).enumerate() {
+            // T.81 section A.1.1.
+            let samples = [(width * h).div_ceil(x), (height * v).div_ceil(y)];
+            let blocks = samples.map(|samples| samples.div_ceil(8));
+            let (factors, unit, table) = ([h, v], [h, v], table.into());
+            self.parts.push(Part { id, place, factors, blocks, unit, table, ..Part::default() });
+        }
+        self.most = [x, y];
+        let (components, bits, is_extended) = (named.len(), bits.into(), marker == 0xc1);
+        self.header = Header { width, height, components, bits, is_extended };
+        Ok(())
+    }
+
+    /// Makes room for the numbers, if what is left of the stream can hold them.
+    fn make_room(&mut self) -> Result<(), String> {
+        let Header { width, height, components, .. } = self.header;
+        let blocks: usize = self.parts.iter().map(|part| part.blocks[0] * part.blocks[1]).sum();
+        // A byte holds 4 blocks at most: each has a code for its mean and one for the rest.
+        if blocks.div_ceil(4) > self.bits.rest.len() {
+            return Err(CUT.to_owned());
+        }
+        let count = (width * height).saturating_mul(components);
+        if self.numbers.try_reserve_exact(count - self.numbers.len()).is_err() {
+            return Err(format!("there is no memory for {width} x {height} pixels"));
+        }
+        self.numbers.resize(count, 0);
+        Ok(())
+    }
+
+    /// Takes the components of a scan, and finds their tables (T.81 section B.2.3).
+    fn take_parts(&mut self, body: &[u8]) -> Option<Vec<Part>> {
+        // The last three are the same in all sequential scans, and some writers have them wrong.
+        let [count, named @ .., _, _, _] = body else { return None };
+        let [means, others, steps] = self.tables;
+        let parts = named.as_chunks().0.iter().map(|&[id, both]| {
+            let index = self.parts.iter().position(|part| part.id == id)?;
+            let part = self.parts.remove(index);
+            let means = codes(means.get(usize::from(both >> 4))?)?;
+            let others = codes(others.get(usize::from(both & 15))?)?;
+            let table = steps.get(part.table).filter(|table| !table.is_empty())?;
+            let number = |step: &[u8]| step.iter().fold(0, |high, &low| (high << 8) | u16::from(low));
+            // One or two bytes for each.
+            let steps = table.chunks(table.len().div_ceil(64)).map(|step| number(step).into());
+            Some(Part { steps: steps.collect(), codes: [means, others], ..part })
+        });
+        let parts: Vec<_> = parts.collect::<Option<_>>()?;
+        (!parts.is_empty() && named.len() == 2 * usize::from(*count)).then_some(parts)
+    }
+
+    /// Decodes a scan (T.81 sections A.2 and E.2.4).
+    fn read_scan(&mut self, body: &[u8]) -> Result<(), String> {
+        self.make_room()?;
+        let parts = self.take_parts(body);
+        let mut parts = parts.ok_or("a scan lacks a table, or has not the right components")?;
+        let mut across = self.header.width.div_ceil(8 * self.most[0]);
+        let mut down = self.header.height.div_ceil(8 * self.most[1]);
+        if let [part] = &mut parts[..] {
+            // Alone, it has no blocks that only fill up.
+            part.unit = [1, 1];
+            [across, down] = part.blocks;
+        }
+        for unit in 0..across * down {
+            if unit > 0 && unit.is_multiple_of(self.interval) {
+                let restart = 0xd0 + (unit / self.interval - 1) % 8;
+                if self.bits.marker().map(usize::from) != Some(restart) {
+                    return Err("a restart is missing".to_owned());
+                }
+                for part in &mut parts {
+                    part.mean = 0;
+                }
+            }
+            for part in &mut parts {
+                let [h, v] = part.unit;
+                for index in 0..h * v {
+                    let block = self.bits.block(part)?;
+                    let at = [unit % across * h + index % h, unit / across * v + index / h];
+                    self.put(part, at, &block);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Puts a block into the picture, each sample into all pixels that it stands for.
+    fn put(&mut self, part: &Part, [x, y]: [usize; 2], block: &Block) {
+        let Header { width, height, components, bits, is_extended: _ } = self.header;
+        let ([h, v], [most_h, most_v]) = (part.factors, self.most);
+        // Without a sign (T.81 section A.3.1), and half of one more so that cutting rounds.
+        let middle = (1 << (bits - 1)) as f64 + 0.5;
+        let most = ((1 << bits) - 1) as f64;
+        let sums = turned(&turned(block, &self.waves), &self.waves);
+        let samples = sums.map(|row| row.map(|sum| (sum / 8.0 + middle).clamp(0.0, most) as u16));
+        let [left, right] = [x, x + 1].map(|x| (8 * x * most_h).div_ceil(h).min(width));
+        let [top, bottom] = [y, y + 1].map(|y| (8 * y * most_v).div_ceil(v).min(height));
+        for row in top..bottom {
+            let samples = samples[row * v / most_v % 8];
+            for column in left..right {
+                let at = (row * width + column) * components + part.place;
+                if let Some(number) = self.numbers.get_mut(at) {
+                    *number = samples[column * h / most_h % 8];
+                }
+            }
+        }
+    }
+}
+
+/// Codes of a table as it is stored, if there is room for them (T.81 annex C).
+fn codes(table: &[u8]) -> Option<Codes> {
+    let (counts, values) = table.split_first_chunk::<16>()?;
+    let lengths = (1..).zip(counts).flat_map(|(length, &count)| repeat_n(length, count.into()));
+    let mut codes = Codes::new();
+    for (length, &value) in lengths.zip(values) {
+        codes.extend(repeat_n((length, value), 1 << (16 - length)));
+        if codes.len() > 1 << 16 {
+            return None;
+        }
+    }
+    Some(codes)
+}
+
+/// Sums of waves, whose heights stand in columns: a transform along columns, which become rows.
+fn turned(heights: &Block, waves: &Block) -> Block {
+    let mut sums = [[0.0; 8]; 8];
+    for (heights, wave) in heights.iter().zip(waves) {
+        // Most coefficients are 0.
+        for (line, &height) in sums.iter_mut().zip(heights).filter(|(_, height)| **height != 0.0) {
+            line.iter_mut().zip(wave).for_each(|(sum, value)| *sum += height * value);
+        }
+    }
+    sums
+}
+
+/// A stream bit by bit, up to its next marker (T.81 section F.2.2.5).
+#[derive(Default)]
+struct Bits<'a> {
+    rest: &'a [u8],
+    /// Bits that come next, the first of them highest, and 0 below them.
+    held: u32,
+    /// How many are held.
+    count: u32,
+}
+
+impl Bits<'_> {
+    /// The next 16 bits without taking them, with 0 for those after the end.
+    fn word(&mut self) -> u32 {
+        while self.count < 16 {
+            let (byte, after) = match self.rest {
+                [0xff, 0, after @ ..] => (0xff, after),
+                [0xff, ..] | [] => break,
+                [byte, after @ ..] => (*byte, after),
+            };
+            self.held |= u32::from(byte) << (24 - self.count);
+            self.count += 8;
+            self.rest = after;
+        }
+        self.held >> 16
+    }
+
+    /// Takes the marker that comes next, after bits that fill up a byte (T.81 section B.1.1.2).
+    fn marker(&mut self) -> Option<u8> {
+        let after = self.rest.strip_prefix(&[0xff]).filter(|_| self.count < 8)?;
+        // It may begin with any number of that byte.
+        let at = after.iter().position(|&byte| byte != 0xff)?;
+        let (&marker, rest) = after.get(at..)?.split_first()?;
+        *self = Self { rest, ..Self::default() };
+        Some(marker)
+    }
+
+    /// Takes up to 16 bits.
+    fn take(&mut self, count: u8) -> Result<u32, String> {
+        let bits = self.word() >> (16 - count);
+        self.count = self.count.checked_sub(count.into()).ok_or(CUT)?;
+        self.held <<= count;
+        Ok(bits)
+    }
+
+    /// Takes a code; what it stands for (T.81 section F.2.2.3).
+    fn value(&mut self, codes: &[(u8, u8)]) -> Result<u8, String> {
+        let &(length, value) = codes.get(self.word() as usize).ok_or("a code is in no table")?;
+        self.take(length)?;
+        Ok(value)
+    }
+
+    /// Takes a number of up to 15 bits (T.81 sections F.2.2.1 and F.2.2.4).
+    fn number(&mut self, size: u8) -> Result<i32, String> {
+        let (number, end) = (self.take(size)? as i32, 1 << size);
+        // The lower half stands for what is negative.
+        Ok(if number < end / 2 { number + 1 - end } else { number })
+    }
+
+    /// Takes a block (T.81 section F.2.2): its coefficients, row by row.
+    fn block(&mut self, part: &mut Part) -> Result<Block, String> {
+        let mut block = [[0.0; 8]; 8];
+        let mut places = ZIGZAG.iter().zip(&part.steps);
+        let mut put = |zeros: u8, number: i32| {
+            let (&place, step) = places.nth(zeros.into())?;
+            *block.as_flattened_mut().get_mut(usize::from(place))? = f64::from(number) * step;
+            Some(place)
+        };
+        let [means, others] = &part.codes;
+        // Means have up to 15 bits, other coefficients up to 14 (T.81 section F.1.5).
+        let size = self.value(means)?;
+        let size = Some(size).filter(|&size| size <= 15).ok_or("a mean has more than 15 bits")?;
+        part.mean = part.mean.saturating_add(self.number(size)?);
+        let mut last = put(0, part.mean);
+        // Both orders end at the same place.
+        while last.ok_or("a coefficient is outside of its block")? < 63 {
+            let value = self.value(others)?;
+            last = match (value >> 4, value & 15) {
+                (0, 0) => break,
+                (15, 0) => put(15, 0),
+                (_, 0 | 15) => Err("a coefficient has more than 14 bits, or none")?,
+                (zeros, size) => put(zeros, self.number(size)?),
+            };
+        }
+        Ok(block)
+    }
+}
