@@ -79,6 +79,7 @@ fn tools_are_docked_beside_the_picture_and_float_again() {
     // Escape closes what the pointer is over.
     click(&mut harness, "Dock Slices beside the picture");
     harness.run_steps(4);
+    assert_eq!(picture_of(&harness), beside);
     harness.hover_at(picture_of(&harness).center());
     harness.step();
     harness.key_press(Key::Escape);
