@@ -1,25 +1,15 @@
 //! Sequential JPEG with loss, of 8 or 12 bits (ITU-T T.81, Huffman codes: SOF0 and SOF1), from a
-//! stream to numbers from 0 to 2^bits - 1; colours stay as they are stored.
-//!
-//! A stream is trusted in nothing: work and memory follow its length and the size that it says.
+//! stream that is trusted in nothing to numbers from 0 to 2^bits - 1; colours stay as they are.
+
+mod bits;
 
 use std::array::from_fn;
 use std::f64::consts::{PI, SQRT_2};
-use std::iter::repeat_n;
+
+use bits::{Bits, Codes};
 
 /// Numbers of a block, row by row (T.81 section A.1.3).
 type Block = [[f64; 8]; 8];
-
-/// For each word of 16 bits, the length of the code that begins it and what that stands for; the
-/// last words may have none (T.81 annex C).
-type Codes = Vec<(u8, u8)>;
-
-/// Places of coefficients in a block, in the order of a stream (T.81 figure A.6).
-const ZIGZAG: [u8; 64] = [
-    0, 1, 8, 16, 9, 2, 3, 10, 17, 24, 32, 25, 18, 11, 4, 5, 12, 19, 26, 33, 40, 48, 41, 34, 27, 20, 13, 6, 7,
-    14, 21, 28, 35, 42, 49, 56, 57, 50, 43, 36, 29, 22, 15, 23, 30, 37, 44, 51, 58, 59, 52, 45, 38, 31, 39,
-    46, 53, 60, 61, 54, 47, 55, 62, 63,
-];
 
 /// What is said of a picture that ends before it is whole.
 const CUT: &str = "the picture is cut off, or broken before its last block";
@@ -67,7 +57,7 @@ pub(super) fn decode(packed: &[u8]) -> Result<Picture, String> {
 
 /// A component of the picture (T.81 section B.2.2).
 #[derive(Default)]
-struct Part {
+struct Part<'a> {
     id: u8,
     /// Its place in a pixel.
     place: usize,
@@ -75,14 +65,12 @@ struct Part {
     factors: [usize; 2],
     /// Blocks across and down that have samples.
     blocks: [usize; 2],
-    /// Blocks across and down in each unit of its scan.
-    unit: [usize; 2],
     /// Which table of steps is for it.
     table: usize,
     /// Steps of coefficients in the order of a stream, from its scan on.
     steps: Vec<f64>,
     /// Codes of means and of other coefficients, from its scan on.
-    codes: [Codes; 2],
+    codes: [Codes<'a>; 2],
     /// The mean of the block before, in steps.
     mean: i32,
 }
@@ -94,14 +82,13 @@ struct Decoder<'a> {
     /// All 0 before it is read.
     header: Header,
     /// Components that no scan had yet.
-    parts: Vec<Part>,
+    parts: Vec<Part<'a>>,
     /// The largest factors across and down.
     most: [usize; 2],
     /// Tables as they are stored: codes of means, codes of other coefficients, steps.
     tables: [[&'a [u8]; 4]; 3],
     /// Units between restarts, or 0.
     interval: usize,
-    /// None before the first scan.
     numbers: Vec<u16>,
     /// Cosines by frequency and place (T.81 section A.3.3), 1 for frequency 0, so that whole
     /// numbers stay whole; sums over both axes are 8 times too large.
@@ -112,18 +99,17 @@ impl<'a> Decoder<'a> {
     /// Begins after the marker at the start of all streams.
     fn new(packed: &'a [u8]) -> Result<Self, String> {
         let rest = packed.strip_prefix(b"\xff\xd8").ok_or("no picture of JPEG begins there")?;
-        let wave = |u: usize, x: usize| ((2 * x + 1) as f64 * u as f64 * PI / 16.0).cos();
+        let wave = |u, x| (f64::from((2 * x + 1) * u) * PI / 16.0).cos();
         let scaled = |u, x| if u == 0 { 1.0 } else { SQRT_2 * wave(u, x) };
-        let waves = from_fn(|u| from_fn(|x| scaled(u, x)));
+        let waves = from_fn(|u| from_fn(|x| scaled(u as u32, x as u32)));
         Ok(Self { bits: Bits { rest, ..Bits::default() }, waves, ..Self::default() })
     }
 
     /// Reads a marker with its segment, and the scan after it if there is one (T.81 table B.1).
     fn read_segment(&mut self) -> Result<(), String> {
         let marker = self.bits.marker().ok_or(CUT)?;
-        let rest = self.bits.rest;
-        let length = rest.first_chunk().map_or(0, |&length| u16::from_be_bytes(length));
-        let (segment, rest) = rest.split_at_checked(length.into()).ok_or(CUT)?;
+        let length = self.bits.rest.first_chunk().map_or(0, |&length| u16::from_be_bytes(length));
+        let (segment, rest) = self.bits.rest.split_at_checked(length.into()).ok_or(CUT)?;
         // The length counts its own two bytes.
         let body = segment.get(2..).ok_or(CUT)?;
         self.bits.rest = rest;
@@ -138,8 +124,7 @@ impl<'a> Decoder<'a> {
             0xda => self.read_scan(body)?,
             0xdc => Err("JPEG whose height follows a scan is not read")?,
             0xdd => self.interval = u16::from_be_bytes(*body.first_chunk().ok_or(CUT)?).into(),
-            // What programs add.
-            0xe0..=0xfe => {}
+            0xe0..=0xfe => {} // What programs add.
             _ => Err(CUT)?,
         }
         Ok(())
@@ -179,8 +164,8 @@ impl<'a> Decoder<'a> {
             // T.81 section A.1.1.
             let samples = [(width * h).div_ceil(x), (height * v).div_ceil(y)];
             let blocks = samples.map(|samples| samples.div_ceil(8));
-            let (factors, unit, table) = ([h, v], [h, v], table.into());
-            self.parts.push(Part { id, place, factors, blocks, unit, table, ..Part::default() });
+            let (factors, table) = ([h, v], table.into());
+            self.parts.push(Part { id, place, factors, blocks, table, ..Part::default() });
         }
         self.most = [x, y];
         let (components, bits, is_extended) = (named.len(), bits.into(), marker == 0xc1);
@@ -192,32 +177,30 @@ impl<'a> Decoder<'a> {
     fn make_room(&mut self) -> Result<(), String> {
         let Header { width, height, components, .. } = self.header;
         let blocks: usize = self.parts.iter().map(|part| part.blocks[0] * part.blocks[1]).sum();
-        // A byte holds 4 blocks at most: each has a code for its mean and one for the rest.
-        if blocks.div_ceil(4) > self.bits.rest.len() {
-            return Err(CUT.to_owned());
-        }
         let count = (width * height).saturating_mul(components);
-        if self.numbers.try_reserve_exact(count - self.numbers.len()).is_err() {
-            return Err(format!("there is no memory for {width} x {height} pixels"));
+        // A byte holds 4 blocks at most: each has a code for its mean and one for the rest.
+        let is_held = blocks.div_ceil(4) <= self.bits.rest.len();
+        if !is_held || self.numbers.try_reserve_exact(count - self.numbers.len()).is_err() {
+            return Err(format!("{width} x {height} pixels are cut off, or too many here"));
         }
         self.numbers.resize(count, 0);
         Ok(())
     }
 
     /// Takes the components of a scan, and finds their tables (T.81 section B.2.3).
-    fn take_parts(&mut self, body: &[u8]) -> Option<Vec<Part>> {
+    fn take_parts(&mut self, body: &[u8]) -> Option<Vec<Part<'a>>> {
         // The last three are the same in all sequential scans, and some writers have them wrong.
         let [count, named @ .., _, _, _] = body else { return None };
         let [means, others, steps] = self.tables;
         let parts = named.as_chunks().0.iter().map(|&[id, both]| {
             let index = self.parts.iter().position(|part| part.id == id)?;
             let part = self.parts.remove(index);
-            let means = codes(means.get(usize::from(both >> 4))?)?;
-            let others = codes(others.get(usize::from(both & 15))?)?;
+            let means = Codes::new(means.get(usize::from(both >> 4))?)?;
+            let others = Codes::new(others.get(usize::from(both & 15))?)?;
             let table = steps.get(part.table).filter(|table| !table.is_empty())?;
-            let number = |step: &[u8]| step.iter().fold(0, |high, &low| (high << 8) | u16::from(low));
+            let read = |step: &[u8]| step.iter().fold(0, |high, &low| (high << 8) | u16::from(low));
             // One or two bytes for each.
-            let steps = table.chunks(table.len().div_ceil(64)).map(|step| number(step).into());
+            let steps = table.chunks(table.len().div_ceil(64)).map(|step| read(step).into());
             Some(Part { steps: steps.collect(), codes: [means, others], ..part })
         });
         let parts: Vec<_> = parts.collect::<Option<_>>()?;
@@ -229,25 +212,24 @@ impl<'a> Decoder<'a> {
         self.make_room()?;
         let parts = self.take_parts(body);
         let mut parts = parts.ok_or("a scan lacks a table, or has not the right components")?;
-        let mut across = self.header.width.div_ceil(8 * self.most[0]);
-        let mut down = self.header.height.div_ceil(8 * self.most[1]);
-        if let [part] = &mut parts[..] {
+        let ([x, y], Header { width, height, .. }) = (self.most, self.header);
+        let [across, down] = match &parts[..] {
             // Alone, it has no blocks that only fill up.
-            part.unit = [1, 1];
-            [across, down] = part.blocks;
-        }
+            [part] => part.blocks,
+            _ => [width.div_ceil(8 * x), height.div_ceil(8 * y)],
+        };
+        let is_alone = parts.len() == 1;
         for unit in 0..across * down {
             if unit > 0 && unit.is_multiple_of(self.interval) {
                 let restart = 0xd0 + (unit / self.interval - 1) % 8;
-                if self.bits.marker().map(usize::from) != Some(restart) {
-                    return Err("a restart is missing".to_owned());
-                }
+                let found = self.bits.marker().filter(|&found| usize::from(found) == restart);
+                found.ok_or("a restart is missing")?;
                 for part in &mut parts {
                     part.mean = 0;
                 }
             }
             for part in &mut parts {
-                let [h, v] = part.unit;
+                let [h, v] = if is_alone { [1, 1] } else { part.factors };
                 for index in 0..h * v {
                     let block = self.bits.block(part)?;
                     let at = [unit % across * h + index % h, unit / across * v + index / h];
@@ -259,7 +241,7 @@ impl<'a> Decoder<'a> {
     }
 
     /// Puts a block into the picture, each sample into all pixels that it stands for.
-    fn put(&mut self, part: &Part, [x, y]: [usize; 2], block: &Block) {
+    fn put(&mut self, part: &Part<'_>, [x, y]: [usize; 2], block: &Block) {
         let Header { width, height, components, bits, is_extended: _ } = self.header;
         let ([h, v], [most_h, most_v]) = (part.factors, self.most);
         // Without a sign (T.81 section A.3.1), and half of one more so that cutting rounds.
@@ -281,20 +263,6 @@ impl<'a> Decoder<'a> {
     }
 }
 
-/// Codes of a table as it is stored, if there is room for them (T.81 annex C).
-fn codes(table: &[u8]) -> Option<Codes> {
-    let (counts, values) = table.split_first_chunk::<16>()?;
-    let lengths = (1..).zip(counts).flat_map(|(length, &count)| repeat_n(length, count.into()));
-    let mut codes = Codes::new();
-    for (length, &value) in lengths.zip(values) {
-        codes.extend(repeat_n((length, value), 1 << (16 - length)));
-        if codes.len() > 1 << 16 {
-            return None;
-        }
-    }
-    Some(codes)
-}
-
 /// Sums of waves, whose heights stand in columns: a transform along columns, which become rows.
 fn turned(heights: &Block, waves: &Block) -> Block {
     let mut sums = [[0.0; 8]; 8];
@@ -307,89 +275,5 @@ fn turned(heights: &Block, waves: &Block) -> Block {
     sums
 }
 
-/// A stream bit by bit, up to its next marker (T.81 section F.2.2.5).
-#[derive(Default)]
-struct Bits<'a> {
-    rest: &'a [u8],
-    /// Bits that come next, the first of them highest, and 0 below them.
-    held: u32,
-    /// How many are held.
-    count: u32,
-}
-
-impl Bits<'_> {
-    /// The next 16 bits without taking them, with 0 for those after the end.
-    fn word(&mut self) -> u32 {
-        while self.count < 16 {
-            let (byte, after) = match self.rest {
-                [0xff, 0, after @ ..] => (0xff, after),
-                [0xff, ..] | [] => break,
-                [byte, after @ ..] => (*byte, after),
-            };
-            self.held |= u32::from(byte) << (24 - self.count);
-            self.count += 8;
-            self.rest = after;
-        }
-        self.held >> 16
-    }
-
-    /// Takes the marker that comes next, after bits that fill up a byte (T.81 section B.1.1.2).
-    fn marker(&mut self) -> Option<u8> {
-        let after = self.rest.strip_prefix(&[0xff]).filter(|_| self.count < 8)?;
-        // It may begin with any number of that byte.
-        let at = after.iter().position(|&byte| byte != 0xff)?;
-        let (&marker, rest) = after.get(at..)?.split_first()?;
-        *self = Self { rest, ..Self::default() };
-        Some(marker)
-    }
-
-    /// Takes up to 16 bits.
-    fn take(&mut self, count: u8) -> Result<u32, String> {
-        let bits = self.word() >> (16 - count);
-        self.count = self.count.checked_sub(count.into()).ok_or(CUT)?;
-        self.held <<= count;
-        Ok(bits)
-    }
-
-    /// Takes a code; what it stands for (T.81 section F.2.2.3).
-    fn value(&mut self, codes: &[(u8, u8)]) -> Result<u8, String> {
-        let &(length, value) = codes.get(self.word() as usize).ok_or("a code is in no table")?;
-        self.take(length)?;
-        Ok(value)
-    }
-
-    /// Takes a number of up to 15 bits (T.81 sections F.2.2.1 and F.2.2.4).
-    fn number(&mut self, size: u8) -> Result<i32, String> {
-        let (number, end) = (self.take(size)? as i32, 1 << size);
-        // The lower half stands for what is negative.
-        Ok(if number < end / 2 { number + 1 - end } else { number })
-    }
-
-    /// Takes a block (T.81 section F.2.2): its coefficients, row by row.
-    fn block(&mut self, part: &mut Part) -> Result<Block, String> {
-        let mut block = [[0.0; 8]; 8];
-        let mut places = ZIGZAG.iter().zip(&part.steps);
-        let mut put = |zeros: u8, number: i32| {
-            let (&place, step) = places.nth(zeros.into())?;
-            *block.as_flattened_mut().get_mut(usize::from(place))? = f64::from(number) * step;
-            Some(place)
-        };
-        let [means, others] = &part.codes;
-        // Means have up to 15 bits, other coefficients up to 14 (T.81 section F.1.5).
-        let size = self.value(means)?;
-        let size = Some(size).filter(|&size| size <= 15).ok_or("a mean has more than 15 bits")?;
-        part.mean = part.mean.saturating_add(self.number(size)?);
-        let mut last = put(0, part.mean);
-        // Both orders end at the same place.
-        while last.ok_or("a coefficient is outside of its block")? < 63 {
-            let value = self.value(others)?;
-            last = match (value >> 4, value & 15) {
-                (0, 0) => break,
-                (15, 0) => put(15, 0),
-                (_, 0 | 15) => Err("a coefficient has more than 14 bits, or none")?,
-                (zeros, size) => put(zeros, self.number(size)?),
-            };
-        }
-        Ok(block)
-    }
-}
+#[cfg(test)]
+mod tests;
