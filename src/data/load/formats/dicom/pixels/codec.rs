@@ -10,7 +10,7 @@ use jpeg_decoder::{CodingProcess, ColorTransform, Decoder, Error, PixelFormat, U
 
 use super::super::header::syntax::Codec;
 use super::shape::{Colors, Shape};
-use super::{extended, rle};
+use super::{extended, jpeg_ls, rle};
 use crate::data::plain;
 
 /// A picture without compression: numbers with their lowest byte first, the colours of a pixel side by side.
@@ -60,6 +60,14 @@ fn check_size(found: [u64; 2], shape: &Shape) -> Result<(), String> {
     Err(format!("a picture has {x} x {y} pixels where the header says {columns} x {rows}"))
 }
 
+fn check_samples(found: usize, shape: &Shape) -> Result<(), String> {
+    let expected = shape.samples;
+    if found == expected {
+        return Ok(());
+    }
+    Err(format!("a picture has {found} numbers a pixel where the header says {expected}"))
+}
+
 /// ITU-T T.81: sequential of 8 and 12 bits, progressive, and lossless up to 16 bits.
 fn jpeg(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
     let mut decoder = Decoder::new(packed);
@@ -75,12 +83,7 @@ fn jpeg(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
         PixelFormat::RGB24 => 3,
         PixelFormat::CMYK32 => 4,
     };
-    if samples != shape.samples {
-        return Err(format!(
-            "a picture has {samples} numbers a pixel where the header says {}",
-            shape.samples
-        ));
-    }
+    check_samples(samples, &shape)?;
     let is_lossless = info.coding_process == CodingProcess::Lossless;
     if samples == 3 {
         let is_ybr = shape.colors == Colors::Ybr;
@@ -111,20 +114,18 @@ fn jpeg(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
 fn extended(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
     let header = extended::header(packed).map_err(broken)?;
     check_size([header.width as u64, header.height as u64], &shape)?;
-    if header.components != shape.samples {
-        let (found, samples) = (header.components, shape.samples);
-        return Err(format!("a picture has {found} numbers a pixel where the header says {samples}"));
-    }
+    check_samples(header.components, &shape)?;
     let numbers = extended::decode(packed).map_err(broken)?.numbers;
     checked(contained(numbers.into_iter().map(u32::from), shape.bytes()), shape)
 }
 
-/// ITU-T T.87, of one number a pixel.
+/// ITU-T T.87.
 fn jpeg_ls(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
-    let (columns, rows) = (shape.columns as u32, shape.rows as u32);
-    let (decoded, width, height) = jpegls::decode(packed, columns, rows).map_err(broken)?;
-    check_size([width.into(), height.into()], &shape)?;
-    checked(contained(decoded.into_iter().map(u32::from), shape.bytes()), shape)
+    let header = jpeg_ls::header(packed).map_err(broken)?;
+    check_size([header.width as u64, header.height as u64], &shape)?;
+    check_samples(header.components, &shape)?;
+    let numbers = jpeg_ls::decode(packed).map_err(broken)?.numbers;
+    checked(contained(numbers.into_iter().map(u32::from), shape.bytes()), shape)
 }
 
 /// The size of a picture of JPEG 2000 as its first segment says it (ITU-T T.800 section A.5.1).

@@ -2,6 +2,7 @@
 
 mod codec;
 mod extended;
+mod jpeg_ls;
 pub(super) mod raster;
 mod rle;
 pub(super) mod shape;

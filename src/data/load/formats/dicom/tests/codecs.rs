@@ -33,6 +33,17 @@ const LOSSY: &str = "ffd8ffe000104a46494600010100000100010000ffdb004300010101010
     0014000100000000000000000000000000000009ffc4001f100001000b0000000000000000000000000200050708091627435253\
     65ffda0008010100003f00401894249c82520a5fa2fabf03e4a7ffd9";
 
+/// Red, green and blue of 8 bits in JPEG-LS: one after the other, line by line, pixel by pixel.
+const COLORS_LS: [&str; 3] = [
+    "ffd8fff70011080004000503011100021100031100ffda0008010100000000003870e4bc0000058c10a20100000058dcc5142247\
+    7100ffda000801020000000000050e4bda000002c6085100822731453023b880ffda000801030000000000014392f6800000b182\
+    14402089cc514c08ee20ffd9",
+    "ffd8fff70011080004000503011100021100031100ffda000c03010002000300000100003870e4bc22d5a7c33fbba000002c6085\
+    1008000002c6e628a1123b8860ecc72f6663172aa94b5b642c6db95b6dc0ffd9",
+    "ffd8fff70011080004000503011100021100031100ffda000c03010002000300000200001049d070e4bdab4ffeee800000b18000\
+    00b188810a21cc523b810a21817973b33332aa9cc52d2c2b6db6db647700ffd9",
+];
+
 /// 12 bits with hardly any loss.
 const EXTENDED: &str = "ffd8ffe000104a46494600010100000100010000ffdb004300010101010101010101010101010101010101010101010101010101\
     01010101010101010101010101010101010101010101010101010101010101010101010101ffc1000b0c0004000501011100ffc4\
@@ -105,6 +116,12 @@ fn colours_are_unpacked() {
     for (component, add) in [(0, 0), (1, 5), (2, 9)] {
         let choice = Choice { component: Some(component), ..Choice::default() };
         let volume = colors.load_with(choice).unwrap();
+        assert_eq!(volume.samples(), &Samples::U8((0..20).map(|n| n * 10 + 20 + add).collect()));
+    }
+    for (component, (picture, add)) in COLORS_LS.into_iter().zip([0, 5, 9]).enumerate() {
+        let colors = file(JPEG_LS, false, &[&[], &hex(picture)]).bits(8, 8, false).short(tags::SAMPLES, 3);
+        let choice = Choice { component: Some(component), ..Choice::default() };
+        let volume = colors.with(|set| set.text(tags::PHOTOMETRIC, *b"CS", "RGB")).load_with(choice).unwrap();
         assert_eq!(volume.samples(), &Samples::U8((0..20).map(|n| n * 10 + 20 + add).collect()));
     }
 }

@@ -1,0 +1,286 @@
+//! The numbers of one scan of JPEG-LS (ITU-T T.87 annex A).
+
+use std::array::from_fn;
+use std::mem::replace;
+
+use super::{ENDS, Header, Picture, Stream};
+
+/// Contexts of T.87 A.3.4, from 365 on the two after runs; a power of two, so that all indices fit.
+const CONTEXTS: usize = 512;
+/// How many bits say the length of a run (J of T.87 A.2.1).
+const RUNS: [u32; 32] =
+    [0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8, 9, 10, 11, 12, 13, 14, 15];
+
+/// What decodes a scan (T.87 annex A); names are as there.
+pub(super) struct Coder {
+    /// Of a pixel, those of other scans too.
+    components: usize,
+    maxval: i32,
+    near: i32,
+    range: i32,
+    qbpp: u32,
+    limit: u32,
+    reset: i32,
+    /// NEAR + 1, T1, T2 and T3.
+    bounds: [i32; 4],
+    /// A, B (after runs: Nn), C and N.
+    contexts: [[i32; 4]; CONTEXTS],
+    bits: Bits,
+}
+
+/// Components that share a run: where they are within a pixel, their place in [`RUNS`], and what
+/// was to the left of the line before.
+type Group<const N: usize> = ([usize; N], usize, [i32; N]);
+
+impl Coder {
+    pub(super) fn new(frame: &Header, presets: [u16; 5], near: u8) -> Result<Self, &'static str> {
+        let &Header { components, bits, .. } = frame;
+        let or = |given, usual| if given == 0 { usual } else { given };
+        let ([maxval, t1, t2, t3, reset], near) = (presets.map(i32::from), i32::from(near));
+        let (maxval, reset) = (or(maxval, (1 << bits) - 1), or(reset, 64));
+        // T.87 C.2.4.1.1.1.
+        let (few, many) = (256 / (maxval + 1), (maxval.min(4095) + 128) / 256);
+        let mut last = near + 1;
+        let usual = [(3, 2, 3), (7, 3, 5), (21, 4, 7)].map(|(basic, least, nears)| {
+            let bound = if few > 1 { basic / few } else { many * (basic - least) + least };
+            let bound = least.max(bound + nears * near);
+            last = if bound > maxval { last } else { bound.max(last) };
+            last
+        });
+        let bounds = [near + 1, or(t1, usual[0]), or(t2, usual[1]), or(t3, usual[2])];
+        // T.87 tables C.2 and C.3.
+        let are_right = bounds.is_sorted() && bounds[3] <= maxval && near <= maxval / 2;
+        if !are_right || maxval >= 1 << bits || !(3..=maxval.max(255)).contains(&reset) {
+            return Err("its parameters are out of range");
+        }
+        let range = (maxval + 2 * near) / (2 * near + 1) + 1;
+        let [qbpp, bpp] = [range - 1, maxval.max(3)].map(|most| 32 - most.leading_zeros());
+        let (limit, contexts) = (2 * (bpp + bpp.max(8)), [[0; 4]; CONTEXTS]);
+        let bits = Bits::default();
+        Ok(Self { components, maxval, near, range, qbpp, limit, reset, bounds, contexts, bits })
+    }
+
+    /// Decodes components, those of an array together; gives where the scan ends.
+    pub(super) fn scan<const N: usize>(
+        mut self,
+        stream: &Stream<'_>,
+        places: &[[usize; N]],
+        picture: &mut Picture,
+    ) -> Result<usize, &'static str> {
+        let &Stream { packed, at, restart, .. } = stream;
+        let (row, numbers) = (picture.width * picture.components, &mut picture.numbers);
+        if (picture.height * places.len()).div_ceil(8) > packed.len() - at {
+            return Err(ENDS);
+        }
+        let missing = row.saturating_mul(picture.height) - numbers.len();
+        if numbers.try_reserve_exact(missing).is_err() {
+            return Err("it is too large");
+        }
+        let mut marker = self.start(packed, at);
+        let fresh = || places.iter().map(|&places| (places, 0, [0; N])).collect();
+        let (zeros, mut groups): (_, Vec<_>) = (vec![0; row], fresh());
+        for y in 0..picture.height {
+            let is_restart = y > 0 && y.checked_rem(restart) == Some(0);
+            if is_restart {
+                // Restarts are numbered from D0 to D7 (T.81 B.2.1).
+                if packed.get(marker + 1) != Some(&(0xd0 + (y / restart - 1) as u8 % 8)) {
+                    return Err("a restart is missing");
+                }
+                (marker, groups) = (self.start(packed, marker + 2), fresh());
+            }
+            numbers.resize(numbers.len().max((y + 1) * row), 0);
+            let (above, line) = numbers.split_at_mut(y * row);
+            let above = above.rchunks(row).next().filter(|_| !is_restart).unwrap_or(&zeros);
+            let line = line.get_mut(..row).unwrap_or_default();
+            for group in &mut groups {
+                self.line(above, line, group);
+                if self.bits.at > self.bits.end {
+                    return Err(ENDS);
+                }
+            }
+        }
+        Ok(marker)
+    }
+
+    /// Starts with what is known of nothing (T.87 A.2.1); gives where the next marker is.
+    fn start(&mut self, packed: &[u8], at: usize) -> usize {
+        self.contexts = [[2.max((self.range + 32) / 64), 0, 0, 1]; CONTEXTS];
+        let rest = packed.get(at..).unwrap_or_default();
+        let marker = rest.windows(2).position(|two| matches!(two, [0xff, 0x80..=0xff]));
+        let length = marker.unwrap_or(rest.len());
+        self.bits = Bits::new(rest.get(..length).unwrap_or_default());
+        at + length
+    }
+
+    /// Decodes a line of a group (T.87 A.3 to A.7).
+    fn line<const N: usize>(&mut self, above: &[u16], line: &mut [u16], group: &mut Group<N>) {
+        let ((places, run, before), components) = (group, self.components);
+        let mut b = from_fn(|i| above.get(places[i]).map_or(0, |&number| number.into()));
+        let (mut a, mut c, mut same) = (b, replace(before, b), 0);
+        let width = line.len() / components;
+        for (x, pixel) in line.chunks_exact_mut(components).enumerate() {
+            let next = above.get((x + 1) * components..).unwrap_or_default();
+            let d = from_fn(|i| next.get(places[i]).map_or(b[i], |&number| number.into()));
+            if same == 0 {
+                let kinds: [_; N] = from_fn(|i| self.context(a[i], b[i], c[i], d[i]));
+                if kinds == [0; N] {
+                    same = 1 + self.run(run, width - x);
+                } else {
+                    a = from_fn(|i| self.regular(kinds[i], a[i], b[i], c[i]));
+                }
+            }
+            if same == 1 {
+                a = from_fn(|i| self.after_run::<N>(*run, a[i], b[i]));
+                *run = run.saturating_sub(1);
+            }
+            same = same.saturating_sub(1);
+            for (&place, &number) in places.iter().zip(&a) {
+                if let Some(old) = pixel.get_mut(place) {
+                    *old = number as u16;
+                }
+            }
+            (c, b) = (b, d);
+        }
+    }
+
+    /// The context of a pixel, or the opposite one below 0 (T.87 A.3).
+    fn context(&self, a: i32, b: i32, c: i32, d: i32) -> i32 {
+        let [high, middle, low] = [d - b, b - c, c - a].map(|gradient| {
+            let size = gradient.abs();
+            self.bounds.iter().map(|&bound| i32::from(size >= bound)).sum::<i32>() * gradient.signum()
+        });
+        81 * high + 9 * middle + low
+    }
+
+    /// Decodes a number where it is not flat (T.87 A.4 to A.6).
+    fn regular(&mut self, kind: i32, a: i32, b: i32, c: i32) -> i32 {
+        let (sign, index) = (if kind < 0 { -1 } else { 1 }, kind.unsigned_abs() as usize % CONTEXTS);
+        let [sum, bias, correction, n] = self.contexts[index];
+        let expected = (a + b - c).clamp(a.min(b), a.max(b)) + sign * correction;
+        let low = low_bits(sum, n);
+        let mapped = self.mapped(low, 0);
+        let is_turned = low == 0 && self.near == 0 && 2 * bias <= -n;
+        let difference = mapped >> 1 ^ -(mapped & 1) ^ -i32::from(is_turned);
+        let [_, b, c, n] = self.learn(index, difference.abs(), difference * (2 * self.near + 1));
+        if *b <= -*n {
+            (*b, *c) = ((*b + *n).max(1 - *n), (*c - 1).max(-128));
+        } else if *b > 0 {
+            (*b, *c) = ((*b - *n).min(0), (*c + 1).min(127));
+        }
+        self.number(expected.clamp(0, self.maxval), sign * difference)
+    }
+
+    /// Decodes how long a run is, where so many pixels are left (T.87 A.7.1).
+    fn run(&mut self, run: &mut usize, left: usize) -> usize {
+        let mut length = 0;
+        while length < left {
+            let bits = RUNS[*run % RUNS.len()];
+            if self.bits.take(1) == 0 {
+                length += self.bits.take(bits) as usize;
+                // The number that ends it is in the same line.
+                if length >= left {
+                    self.bits.at = self.bits.end + 1;
+                }
+                return length;
+            }
+            length += 1 << bits;
+            *run = (*run + usize::from(length <= left)).min(RUNS.len() - 1);
+        }
+        length
+    }
+
+    /// Decodes the number that ends a run (T.87 A.7.2): of many components, they are never alike.
+    fn after_run<const N: usize>(&mut self, run: usize, a: i32, b: i32) -> i32 {
+        let like = i32::from(N == 1 && (a - b).abs() <= self.near);
+        let index = (365 + like as usize) % CONTEXTS;
+        let [sum, below, _, n] = self.contexts[index];
+        let low = low_bits(sum.saturating_add(like * (n >> 1)), n);
+        let mapped = self.mapped(low, RUNS[run % RUNS.len()] + 1);
+        let size = (mapped + like + 1) >> 1;
+        let is_often = low != 0 || 2 * below >= n;
+        let is_below = size > 0 && ((mapped + like) & 1 == 1) == is_often;
+        self.learn(index, (mapped + 1 - like) >> 1, is_below.into());
+        let difference = if is_below == (like == 0 && a > b) { size } else { -size };
+        self.number(if like == 1 { a } else { b }, difference)
+    }
+
+    /// Counts a difference (T.87 A.6.1, A.7.2).
+    fn learn(&mut self, index: usize, size: i32, difference: i32) -> &mut [i32; 4] {
+        let context = &mut self.contexts[index % CONTEXTS];
+        let [a, b, _, n] = context;
+        let half = u32::from(*n == self.reset);
+        *a = a.saturating_add(size) >> half;
+        *b = (*b + difference) >> half;
+        *n = (*n >> half) + 1;
+        context
+    }
+
+    /// The number that differs so from what was expected (T.87 A.4.4, A.4.5).
+    fn number(&self, expected: i32, difference: i32) -> i32 {
+        let step = 2 * self.near + 1;
+        let number = expected + difference * step;
+        let around = i32::from(number < -self.near) - i32::from(number > self.maxval + self.near);
+        (number + around * self.range * step).clamp(0, self.maxval)
+    }
+
+    /// Takes a mapped difference, where so much is off the limit (T.87 A.5.3).
+    fn mapped(&mut self, low: u32, off: u32) -> i32 {
+        let most = self.limit.saturating_sub(self.qbpp + 1 + off);
+        let zeros = self.bits.peek().leading_zeros();
+        self.bits.at += zeros as usize + 1;
+        let mapped =
+            if zeros < most { zeros << low | self.bits.take(low) } else { self.bits.take(self.qbpp) + 1 };
+        if zeros > most || mapped > self.range.cast_unsigned() {
+            self.bits.at = self.bits.end + 1;
+            return 0;
+        }
+        mapped.cast_signed()
+    }
+}
+
+/// How many low bits differences have of which so many sum up so (T.87 A.5.1).
+fn low_bits(sum: i32, count: i32) -> u32 {
+    let low = count.leading_zeros().saturating_sub(sum.leading_zeros());
+    low + u32::from(count << low < sum)
+}
+
+/// What is between two markers.
+#[derive(Default)]
+struct Bits {
+    /// As many as there are, then zeros.
+    bytes: Vec<u8>,
+    end: usize,
+    /// The next; beyond the end where something is wrong.
+    at: usize,
+}
+
+impl Bits {
+    /// Those of bytes that have but 7 each after FF (T.87 A.1).
+    fn new(packed: &[u8]) -> Self {
+        let (mut bytes, mut bits, mut count, mut last) = (Vec::new(), 0, 0, 0);
+        for &byte in packed {
+            let size = if last == 0xff { 7 } else { 8 };
+            (bits, count, last) = (bits << size | u32::from(byte), count + size, byte);
+            if count >= 8 {
+                count -= 8;
+                bytes.push((bits >> count) as u8);
+            }
+        }
+        let end = 8 * bytes.len() + count;
+        bytes.extend([(bits << (8 - count)) as u8, 0, 0, 0, 0, 0, 0, 0, 0]);
+        Self { bytes, end, at: 0 }
+    }
+
+    /// At least 57 of the next, from the highest on.
+    fn peek(&self) -> u64 {
+        let eight = self.bytes.get(self.at / 8..).and_then(|rest| rest.first_chunk());
+        eight.map_or(0, |&eight| u64::from_be_bytes(eight) << (self.at % 8))
+    }
+
+    /// Takes up to 32.
+    fn take(&mut self, count: u32) -> u32 {
+        let taken = self.peek() >> 1 >> (63 - count);
+        self.at += count as usize;
+        taken as u32
+    }
+}

@@ -1,0 +1,158 @@
+//! Pictures of JPEG-LS (ITU-T T.87), without loss or nearly so, of one to four components.
+//!
+//! Hostile pictures: a line takes at least one bit of each component (of all of them together where
+//! pixels are coded whole), so a scan with fewer bits than lines is refused before it gets memory.
+//! A run may code a line of any width in that one bit, so no better bound exists: who decodes first
+//! compares [`header`] with the size that is wanted. Rows are added as their bits are found, so a
+//! short picture of a large size takes neither the memory nor the time of that size.
+
+mod coder;
+
+use std::mem::take;
+
+use coder::Coder;
+
+/// What a picture says of itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Header {
+    pub(super) width: usize,
+    pub(super) height: usize,
+    /// Numbers of a pixel.
+    pub(super) components: usize,
+    /// Of a number.
+    pub(super) bits: u32,
+}
+
+/// A picture as its [`Header`] says, with its numbers: row by row, the components of a pixel side
+/// by side, in the colours that were coded.
+#[derive(Debug)]
+pub(super) struct Picture {
+    pub(super) width: usize,
+    pub(super) height: usize,
+    pub(super) components: usize,
+    pub(super) numbers: Vec<u16>,
+}
+
+/// Reads what a picture says of itself, up to the header of its frame (SOF55) and no further.
+pub(super) fn header(packed: &[u8]) -> Result<Header, String> {
+    packed.starts_with(&[0xff, 0xd8]).then_some(()).ok_or("it is not JPEG-LS")?;
+    let mut stream = Stream { packed, at: 2, ..Stream::default() };
+    while stream.frame.is_none() {
+        stream.segment()?;
+    }
+    Ok(stream.frame.ok_or(BROKEN)?)
+}
+
+/// Decodes a picture: all of it, or nothing.
+pub(super) fn decode(packed: &[u8]) -> Result<Picture, String> {
+    let Header { width, height, components, bits: _ } = header(packed)?;
+    let mut picture = Picture { width, height, components, numbers: Vec::new() };
+    let mut missing = vec![true; components];
+    let mut stream = Stream { packed, at: 2, ..Stream::default() };
+    while missing.contains(&true) {
+        let Some(segment) = stream.segment()? else { continue };
+        let (coder, places, are_whole) = stream.scan(segment)?;
+        // One that comes twice would take time again and again.
+        if !places.iter().all(|&at| missing.get_mut(at).is_some_and(take)) {
+            return Err(BROKEN.to_owned());
+        }
+        stream.at = match (are_whole, &places[..]) {
+            (true, &[a, b]) => coder.scan(&stream, &[[a, b]], &mut picture)?,
+            (true, &[a, b, c]) => coder.scan(&stream, &[[a, b, c]], &mut picture)?,
+            (true, &[a, b, c, d]) => coder.scan(&stream, &[[a, b, c, d]], &mut picture)?,
+            _ => coder.scan(&stream, places.as_chunks::<1>().0, &mut picture)?,
+        };
+    }
+    Ok(picture)
+}
+
+/// What is said where bits are missing, or are none that an encoder writes.
+const ENDS: &str = "it is broken, or ends before all of its pixels are there";
+/// What is said of a segment that is of a wrong length or in a wrong place.
+const BROKEN: &str = "its markers are broken";
+
+/// The markers of a picture, and what they have said so far (T.87 C.1).
+#[derive(Default)]
+struct Stream<'a> {
+    packed: &'a [u8],
+    at: usize,
+    frame: Option<Header>,
+    /// How scans call the components of a pixel.
+    names: Vec<u8>,
+    /// MAXVAL, T1, T2, T3 and RESET (T.87 C.2.4.1.1), 0 where they are as usual.
+    presets: [u16; 5],
+    /// Lines from one restart to the next (T.87 C.2.5), or 0.
+    restart: usize,
+}
+
+impl<'a> Stream<'a> {
+    /// Reads one segment with its marker (T.81 B.1.1); gives it if it starts a scan.
+    fn segment(&mut self) -> Result<Option<&'a [u8]>, &'static str> {
+        let rest = self.packed.get(self.at..).unwrap_or_default();
+        let fill = rest.iter().take_while(|&&byte| byte == 0xff).count();
+        let (marker, after) = match rest.get(fill..) {
+            Some([0xd9, ..] | []) | None => return Err(ENDS),
+            Some([marker, after @ ..]) => (*marker, after),
+        };
+        let length = after.first_chunk().map_or(0, |&two| usize::from(u16::from_be_bytes(two)));
+        let data = after.get(2..length).ok_or(BROKEN)?;
+        self.at += fill + 1 + length;
+        match (marker, data) {
+            _ if fill == 0 => return Err(BROKEN),
+            (0xda, _) if self.frame.is_some() => return Ok(Some(data)),
+            (0xf7, _) if self.frame.is_none() => self.read_frame(data)?,
+            (0xf8, [1, presets @ ..]) if presets.len() == 10 => {
+                let presets = presets.as_chunks().0.first_chunk().ok_or(BROKEN)?;
+                self.presets = presets.map(u16::from_be_bytes);
+            }
+            (0xf8, [2 | 3, ..]) => return Err("mapping tables are not read"),
+            (0xf8, [4..=255, ..]) => return Err("extensions of JPEG-LS are not read"),
+            (0xdd, _) if matches!(data.len(), 2..=4) => {
+                self.restart = data.iter().fold(0, |all, &byte| all << 8 | usize::from(byte));
+            }
+            // By HP's encoder, to pack better; 0 is none.
+            (0xe8, [b'm', b'r', b'f', b'x', 1..=255, ..]) => return Err("its colours are mixed"),
+            // Of applications, and comments.
+            (0xe0..=0xef | 0xfe, _) => {}
+            (0xc0..=0xcf, _) => return Err("it is JPEG of another kind"),
+            _ => return Err(BROKEN),
+        }
+        Ok(None)
+    }
+
+    /// Reads the header of the frame (T.87 C.2.2).
+    fn read_frame(&mut self, data: &[u8]) -> Result<(), &'static str> {
+        let &[bits, y1, y0, x1, x0, count, ref each @ ..] = data else { return Err(BROKEN) };
+        let [width, height] = [[x1, x0], [y1, y0]].map(|two| u16::from_be_bytes(two).into());
+        let parts = each.as_chunks::<3>().0;
+        self.names = parts.iter().map(|part| part[0]).collect();
+        self.frame = Some(Header { width, height, components: parts.len(), bits: bits.into() });
+        match count {
+            _ if each.len() != 3 * usize::from(count) => Err(BROKEN),
+            0 | 5.. => Err("only 1 to 4 components are read"),
+            _ if !(2..=16).contains(&bits) => Err("only 2 to 16 bits are read"),
+            _ if parts.iter().any(|part| part[1] != 0x11) => Err("subsampling is not read"),
+            _ if width == 0 || height == 0 => Err("sizes that are given later are not read"),
+            _ => Ok(()),
+        }
+    }
+
+    /// Understands the header of a scan (T.87 C.2.3): where its components are within a pixel, and
+    /// whether its pixels are coded whole.
+    fn scan(&self, data: &[u8]) -> Result<(Coder, Vec<usize>, bool), &'static str> {
+        let (&count, rest) = data.split_first().ok_or(BROKEN)?;
+        let (pairs, rest) = rest.split_at_checked(2 * usize::from(count)).ok_or(BROKEN)?;
+        let &[near, mode @ 0..=2, transform] = rest else { return Err(BROKEN) };
+        let pairs = pairs.as_chunks::<2>().0;
+        if transform != 0 || pairs.iter().any(|pair| pair[1] != 0) {
+            return Err("point transforms and mapping tables are not read");
+        }
+        let place = |pair: &[u8; 2]| self.names.iter().position(|&name| name == pair[0]);
+        let places: Vec<_> = pairs.iter().map(place).collect::<Option<_>>().ok_or(BROKEN)?;
+        let frame = self.frame.as_ref().ok_or(BROKEN)?;
+        match (mode, places.len()) {
+            (_, 0) | (0, 2..) => Err(BROKEN),
+            (_, n) => Ok((Coder::new(frame, self.presets, near)?, places, mode == 2 && n > 1)),
+        }
+    }
+}
