@@ -1,5 +1,5 @@
-//! From which side a volume is seen first: from the front where the file says which that is, else from where most can
-//! be told about the object.
+//! From which side a volume is seen first: a slice or a few as pictures are looked at, a body from the front where the file
+//! says which that is, all else from where most can be told about the object.
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
@@ -11,6 +11,12 @@ use crate::model::Camera;
 /// In front of a patient, to the right of the face and a little above: three-quarter, as portraits are. World space is
 /// right-anterior-superior.
 const FRONT: (f64, f64) = (60.0, 13.0);
+
+/// A grid is flat whose shortest edge is less than this share of the next: from the side nothing of it would be seen.
+const FLAT: f64 = 0.125;
+
+/// Several slices are seen a little from above, so that what lies over what can be told; one is a picture.
+const ABOVE_DEG: f64 = 25.0;
 
 /// Azimuths that are tried, this far apart, at each of these elevations.
 const AZIMUTH_STEP_DEG: f64 = 45.0;
@@ -33,6 +39,10 @@ const PIXEL: f64 = 1.5;
 
 /// Points the camera at a volume's object from a good side; its distance is not changed.
 pub(super) fn choose(camera: &mut Camera, volume: &Volume, object: &Object) {
+    if let Some(view) = face_of(volume) {
+        turn_to(camera, view);
+        return;
+    }
     if volume.is_anatomical() {
         (camera.azimuth_deg, camera.elevation_deg) = FRONT;
         return;
@@ -62,6 +72,46 @@ pub(super) fn choose(camera: &mut Camera, volume: &Volume, object: &Object) {
         let azimuth = (views[best].0 + 180.0).rem_euclid(360.0) - 180.0;
         (camera.azimuth_deg, camera.elevation_deg) = (azimuth, views[best].1);
     }
+}
+
+/// How a grid is looked at that has only few slices, as right, up and backward in scene space: across them, rows of a
+/// picture from the top down, never mirrored.
+fn face_of(volume: &Volume) -> Option<DMat3> {
+    let axes = volume.scene().scene_from_index.matrix3;
+    let axes = [axes.x_axis, axes.y_axis, axes.z_axis];
+    let dims = volume.dims();
+    let mut by_length = [0, 1, 2].map(|axis: usize| (axes[axis].length() * dims[axis] as f64, axis));
+    by_length.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let [(shortest, across), (next, _), _] = by_length;
+    if shortest >= FLAT * next {
+        return None;
+    }
+    // Slices that lie behind each other are pictures, whose second axis runs down; others stand.
+    let (right, up) = match across {
+        0 => (axes[1], axes[2]),
+        1 => (axes[0], axes[2]),
+        _ => (axes[0], -axes[1]),
+    };
+    let right = right.normalize();
+    let up = up.reject_from(right).normalize();
+    let backward = right.cross(up);
+    let above = if dims[across] > 1 { ABOVE_DEG.to_radians() } else { 0.0 };
+    let (sine, cosine) = above.sin_cos();
+    Some(DMat3::from_cols(right, up * cosine - backward * sine, backward * cosine + up * sine))
+}
+
+/// Turns a camera so that right, up and backward are these, in scene space.
+fn turn_to(camera: &mut Camera, view: DMat3) {
+    let upright_from_scene = camera.up.scene_from_upright().transpose();
+    let (up, backward) = (upright_from_scene * view.y_axis, upright_from_scene * view.z_axis);
+    let elevation = backward.z.clamp(-1.0, 1.0).asin();
+    // Straight from above or below the eye is on no side: what points up says on which it would come to be.
+    let aside = if backward.truncate().length() > 1e-6 { backward } else { -up * backward.z.signum() };
+    camera.azimuth_deg = aside.y.atan2(aside.x).to_degrees();
+    camera.elevation_deg = elevation.to_degrees();
+    camera.roll_deg = 0.0;
+    let level = camera.scene_from_view();
+    camera.roll_deg = (-view.y_axis.dot(level.x_axis)).atan2(view.y_axis.dot(level.y_axis)).to_degrees();
 }
 
 /// A cell of the object's surface.
@@ -192,6 +242,7 @@ impl Surface {
 mod tests {
     use super::*;
     use crate::data::Samples;
+    use crate::model::SceneAxis;
     use crate::model::auto::tests::shows_what_is_bright;
 
     /// A plate with knobs on its side of high y.
@@ -247,6 +298,37 @@ mod tests {
         let towards_eye = camera.scene_from_view().z_axis;
         // Anterior, to the right of the face, a little from above.
         assert!(towards_eye.y > 0.7 && towards_eye.x > 0.3 && (0.15..0.3).contains(&towards_eye.z));
+    }
+
+    #[test]
+    fn slices_are_seen_as_pictures() {
+        let aimed = |volume: &Volume, up| {
+            let object = Object::shown_by(&shows_what_is_bright(), volume);
+            let mut camera = Camera { up, ..Camera::default() };
+            choose(&mut camera, volume, &object);
+            camera.scene_from_view()
+        };
+        let is_near = |a: DVec3, b: DVec3| (a - b).length() < 1e-9;
+        let slice = |dims: [usize; 3]| {
+            let samples = Samples::U8(vec![200; dims.iter().product()]);
+            Volume::with_spacing("slice", dims, DVec3::ONE, samples).unwrap()
+        };
+        for up in SceneAxis::ALL {
+            // Columns to the right, rows downwards: what comes first is at the top left.
+            let view = aimed(&slice([40, 30, 1]), up);
+            assert!(is_near(view.x_axis, DVec3::X) && is_near(view.y_axis, DVec3::NEG_Y), "{up:?}: {view}");
+            let view = aimed(&slice([40, 1, 30]), up);
+            assert!(is_near(view.x_axis, DVec3::X) && is_near(view.y_axis, DVec3::Z), "{up:?}: {view}");
+            // Several are seen a little from their upper border.
+            let view = aimed(&slice([40, 30, 3]), up);
+            assert!(
+                is_near(view.x_axis, DVec3::X) && (view.y_axis.y + ABOVE_DEG.to_radians().cos()).abs() < 1e-9
+            );
+            assert!(view.z_axis.y < -0.4 && view.z_axis.z < -0.9, "{view}");
+        }
+        // Of a body, too: from the feet, as slices are looked at.
+        let view = aimed(&slice([40, 30, 1]).with_anatomy(true), SceneAxis::default());
+        assert!(is_near(view.z_axis, DVec3::NEG_Z));
     }
 
     #[test]
