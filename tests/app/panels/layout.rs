@@ -72,14 +72,7 @@ fn tools_are_docked_beside_the_picture_and_float_again() {
     harness.key_press(Key::Escape);
     harness.run_steps(4);
     assert_eq!(picture_of(&harness), beside);
-    click(&mut harness, "Make Slices a window");
-    harness.run_steps(4);
-    assert_eq!(picture_of(&harness), usual);
-    assert!(harness.query_by_label("Slice across z").is_some(), "and it is still open");
     // Escape closes what the pointer is over.
-    click(&mut harness, "Dock Slices beside the picture");
-    harness.run_steps(4);
-    assert_eq!(picture_of(&harness), beside);
     harness.hover_at(picture_of(&harness).center());
     harness.step();
     harness.key_press(Key::Escape);
@@ -91,6 +84,13 @@ fn tools_are_docked_beside_the_picture_and_float_again() {
     harness.key_press(Key::Escape);
     harness.run_steps(4);
     assert_eq!(picture_of(&harness), usual);
+    harness.key_press(Key::D);
+    harness.run_steps(4);
+    assert_eq!(picture_of(&harness), beside, "where it was");
+    click(&mut harness, "Make Slices a window");
+    harness.run_steps(4);
+    assert_eq!(picture_of(&harness), usual);
+    assert!(harness.query_by_label("Slice across z").is_some(), "and it is still open");
     wait_until_idle(&mut harness);
 }
 
