@@ -165,7 +165,7 @@ fn pictures_that_are_not_what_the_header_says_are_refused() {
         (file(JPEG_2000, true, &[&[], &[0; 8]]), "no stream"),
         (file(JPEG_LOSSLESS, true, &[&[], &hex(LOSSLESS)]).size(4, 4), "5 x 4 pixels"),
         (file(JPEG_LOSSLESS, true, &[&[], &[0; 8]]), "broken"),
-        (file(JPEG_LS, true, &[&[], &hex(LS)]).size(4, 5), "broken"),
+        (file(JPEG_LS, true, &[&[], &hex(LS)]).size(4, 5), "5 x 4 pixels where the header says 4 x 5"),
         (file(RLE, true, &[&[], &[0; 8]]), "0 planes"),
         (file(RLE, true, &[]), "0 fragments"),
     ] {
