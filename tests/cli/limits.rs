@@ -176,7 +176,7 @@ fn data_that_no_number_can_span_and_unlike_spacings_are_refused_in_words() {
     folder.write("flat.nrrd", attached("sizes: 4 4 4\nspacings: 1e-9 1e9 1", 64));
     // Distances that cannot be meant together are mended, and said.
     let said = folder.succeed("info flat.nrrd");
-    assert!(said.contains("1 × 1 × 1 (nobody knows of what)") && said.contains("note"), "{said}");
+    assert!(said.contains("1 × 1 × 1 mm") && said.contains("note"), "{said}");
     folder.write("x_4x4x4_uint8.raw", [0; 64]);
     let said = folder.refuse("x_4x4x4_uint8.raw --spacing 1x1x20000", &[3]);
     assert!(said.contains("--spacing"), "{said}");

@@ -72,12 +72,6 @@ impl Placement {
         Self { is_anatomical: false, ..self }
     }
 
-    /// Whether voxels are 1 apart along each axis.
-    pub(in crate::data::load) fn has_unit_steps(&self) -> bool {
-        let axes = self.world_from_index.matrix3;
-        [axes.x_axis, axes.y_axis, axes.z_axis].into_iter().all(|axis| (axis.length() - 1.0).abs() < 1e-9)
-    }
-
     /// The same where the file says how distances compare, and not how long they are.
     #[must_use]
     pub(in crate::data::load) fn of_unknown_scale(self) -> Self {

@@ -88,10 +88,7 @@ impl Geometry {
         let placement = placement(attempt, header, &spatial)?;
         let unit = mm_per_unit(header, "space units").or_else(|| mm_per_unit(header, "units"));
         let placement = placement.said_in(unit.unwrap_or(1.0));
-        // All distances 1 of nothing are what is written where nobody knows how large voxels are.
-        let says_nothing = unit.is_none() && !placement.is_anatomical && placement.has_unit_steps();
-        let is_unknown = says_nothing || counts_voxels(header);
-        let placement = if is_unknown { placement.of_unknown_scale() } else { placement };
+        let placement = if counts_voxels(header) { placement.of_unknown_scale() } else { placement };
 
         let before: Vec<&Axis> = all.iter().take_while(|axis| !axis.spatial).collect();
         let behind: Vec<&Axis> = all.iter().rev().take_while(|axis| !axis.spatial).collect();
