@@ -7,16 +7,29 @@ const SIGNALLED: i32 = 128;
 
 /// Does what must be done before the process ends, and ends it without the destructors of threads that are in the
 /// middle of something.
-#[expect(
-    clippy::exit,
-    reason = "whoever sent the signal waits for the process, and all that matters is on the disk"
-)]
 fn end(last_acts: &[fn()], signal: i32) -> ! {
     for act in last_acts {
         act();
     }
     remove_unfinished();
-    std::process::exit(SIGNALLED + signal)
+    leave(SIGNALLED + signal)
+}
+
+/// Ends the process at once: what libraries do at an exit, such as drivers that take their threads down, would crash
+/// where these are drawing.
+#[cfg(unix)]
+fn leave(code: i32) -> ! {
+    signal_hook::low_level::exit(code)
+}
+
+/// Ends the process.
+#[cfg(not(unix))]
+#[expect(
+    clippy::exit,
+    reason = "whoever sent the signal waits for the process, and all that matters is on the disk"
+)]
+fn leave(code: i32) -> ! {
+    std::process::exit(code)
 }
 
 /// Listens, from now on, on a thread of its own. Before the process ends, some things are done.
