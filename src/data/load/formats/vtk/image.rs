@@ -75,9 +75,7 @@ impl Grid {
         });
         let axes = self.direction * DMat3::from_diagonal(self.spacing);
         let affine = DAffine3 { matrix3: axes, translation: self.origin + axes * first };
-        let placed = Placement::ras(affine).of_no_body().remarked(remark);
-        // The format has no units, and this is what is written where nobody knows.
-        if self.spacing == DVec3::ONE { placed.of_unknown_scale() } else { placed }
+        Placement::ras(affine).of_no_body().remarked(remark)
     }
 }
 
