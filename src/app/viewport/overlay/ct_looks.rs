@@ -60,7 +60,12 @@ impl CtLooks {
         ui.label(RichText::new(text::picture::CT_LOOKS).color(theme::EYE_CURVE));
         for preset in presets {
             let title = RichText::new(preset.title()).color(theme::ACCENT);
-            if ui.add(egui::Button::new(title).frame(false)).on_hover_text(preset.about()).clicked() {
+            let button = ui.add(egui::Button::new(title).frame(false));
+            // What it is for is read from its text: only for who asks.
+            let button = button.on_hover_ui(|ui| {
+                ui.label(preset.about());
+            });
+            if button.clicked() {
                 commands.push(Command::UsePreset(preset));
             }
         }

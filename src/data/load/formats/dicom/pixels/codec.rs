@@ -112,20 +112,29 @@ fn jpeg(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
 
 /// The same of 12 bits with loss (JPEG Extended, 1.2.840.10008.1.2.4.51).
 fn extended(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
-    let header = extended::header(packed).map_err(broken)?;
-    check_size([header.width as u64, header.height as u64], &shape)?;
-    check_samples(header.components, &shape)?;
-    let numbers = extended::decode(packed).map_err(broken)?.numbers;
-    checked(contained(numbers.into_iter().map(u32::from), shape.bytes()), shape)
+    let extended::Header { width, height, components, .. } = extended::header(packed).map_err(broken)?;
+    let decode = || extended::decode(packed).map(|picture| picture.numbers);
+    if_as_said([width, height], components, shape, decode)
+}
+
+/// The numbers of a picture, which are decoded if it has the size and the numbers a pixel that the header says.
+fn if_as_said(
+    [width, height]: [usize; 2],
+    components: usize,
+    shape: Shape,
+    decode: impl FnOnce() -> Result<Vec<u16>, String>,
+) -> Result<Unpacked, String> {
+    check_size([width as u64, height as u64], &shape)?;
+    check_samples(components, &shape)?;
+    let numbers = decode().map_err(broken)?.into_iter().map(u32::from);
+    checked(contained(numbers, shape.bytes()), shape)
 }
 
 /// ITU-T T.87.
 fn jpeg_ls(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
-    let header = jpeg_ls::header(packed).map_err(broken)?;
-    check_size([header.width as u64, header.height as u64], &shape)?;
-    check_samples(header.components, &shape)?;
-    let numbers = jpeg_ls::decode(packed).map_err(broken)?.numbers;
-    checked(contained(numbers.into_iter().map(u32::from), shape.bytes()), shape)
+    let jpeg_ls::Header { width, height, components, .. } = jpeg_ls::header(packed).map_err(broken)?;
+    let decode = || jpeg_ls::decode(packed).map(|picture| picture.numbers);
+    if_as_said([width, height], components, shape, decode)
 }
 
 /// The size of a picture of JPEG 2000 as its first segment says it (ITU-T T.800 section A.5.1).
