@@ -77,7 +77,7 @@ macro_rules! kept {
 }
 
 /// Files of other programs, which take a program to write, each one that is valid.
-const KEPT: [(&str, &[u8]); 37] = kept![
+const KEPT: [(&str, &[u8]); 39] = kept![
     "packed.nrrd",
     "digits.nrrd",
     "appended.vti",
@@ -94,7 +94,9 @@ const KEPT: [(&str, &[u8]); 37] = kept![
     "runs.dcm",
     "lossless.dcm",
     "jpeg.dcm",
+    "extended.dcm",
     "jpeg_ls.dcm",
+    "jpeg_ls_colour.dcm",
     "jpeg_2000.dcm",
     "tiles.tif",
     "lzw.tif",

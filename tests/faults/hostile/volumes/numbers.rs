@@ -35,7 +35,16 @@ pub(super) fn add(made: &mut Maker) {
     for name in ["lzw.tif", "zstd.tif", "jpeg.tif", "colors.tif", "imagej.tif", "ome.tif"] {
         tiff(made, name, &of(name));
     }
-    for name in ["frames.dcm", "runs.dcm", "jpeg.dcm", "jpeg_2000.dcm", "jpeg_ls.dcm", "lossless.dcm"] {
+    for name in [
+        "frames.dcm",
+        "runs.dcm",
+        "jpeg.dcm",
+        "extended.dcm",
+        "jpeg_2000.dcm",
+        "jpeg_ls.dcm",
+        "jpeg_ls_colour.dcm",
+        "lossless.dcm",
+    ] {
         dicom(made, name, &of(name));
     }
     npz(made, &of("arrays.npz"));
