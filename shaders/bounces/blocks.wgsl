@@ -8,8 +8,9 @@
 @group(0) @binding(5) var look_pyramid: texture_3d<f32>;
 // Scattering in rgb, extinction in a.
 @group(0) @binding(6) var<storage, read_write> scattering: array<vec4f>;
-// The same for rays, which find no light yet: in rgb what blocks give off, per shortest edge.
-@group(0) @binding(7) var medium: texture_storage_3d<rgba16float, write>;
+// The same for rays, which find no light yet: what blocks give off per shortest edge in rgb, extinction in a; of light that
+// has one colour all through in r and g.
+@group(0) @binding(7) var medium: texture_storage_3d<TARGET_FORMAT, write>;
 
 // More would be no darker: half of it ends all light within a voxel, and 16 bits hold it.
 const MOST_EXTINCTION = 1024.0;
@@ -44,7 +45,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     sum *= blocks.edge / 8.0;
     sum *= min(MOST_EXTINCTION / max(sum.a, 1e-9), 1.0);
+#if ONE_COLOR
+    textureStore(medium, id, vec4f(0.0, sum.a, 0.0, 0.0));
+#else
     textureStore(medium, id, vec4f(0.0, 0.0, 0.0, sum.a));
+#endif
     if (all(id >= vec3u(1u)) && all(id <= blocks.dims)) {
         let at = id - 1u;
         scattering[(at.z * blocks.dims.y + at.y) * blocks.dims.x + at.x] = sum;

@@ -6,11 +6,10 @@ struct Bounce {
     dims: vec3u,
     // One over the number of directions.
     share: f32,
+    // That of light which has one colour all through, whose amount is then the first of three.
+    color: vec3f,
     // Blocks of less extinction are left out.
     least: f32,
-    pad0: f32,
-    pad1: f32,
-    pad2: f32,
 }
 
 @group(0) @binding(3) var<uniform> bound_bounce: Bounce;

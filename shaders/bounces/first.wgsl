@@ -39,6 +39,16 @@ var<private> scene: First;
 // What blocks give off per shortest edge before light bounces.
 @group(0) @binding(6) var<storage, read_write> first: array<vec4f>;
 
+// The extinction there.
+fn medium_at(place: vec3f) -> f32 {
+    let found = textureSampleLevel(medium, clamped, place, 0.0);
+#if ONE_COLOR
+    return found.g;
+#else
+    return found.a;
+#endif
+}
+
 // What is left of a light in a block of some extinction, on the mean over it as sheets have it, along a ray whose steps are a
 // block long.
 fn left_of(light: Light, block: vec3f, extinction: f32, towards: Towards) -> f32 {
@@ -55,7 +65,7 @@ fn left_of(light: Light, block: vec3f, extinction: f32, towards: Towards) -> f32
         if (length <= 0.0 || any(place < vec3f(-1.0)) || any(place > vec3f(bounce.dims))) {
             break;
         }
-        depth += textureSampleLevel(medium, clamped, (place + 1.5) * scene.block_scale, 0.0).a * length * scale;
+        depth += medium_at((place + 1.5) * scene.block_scale) * length * scale;
         if (depth > 20.0) {
             break;
         }

@@ -10,5 +10,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (any(id >= bounce.dims)) {
         return;
     }
-    textureStore(bounced, id, vec4f(min(sums[number_of(id)].rgb * bounce.share, vec3f(MOST_LIGHT)), 1.0));
+    let sum = sums[number_of(id)] * bounce.share;
+#if ONE_COLOR
+    let light = sum.r * bounce.color;
+#else
+    let light = sum.rgb;
+#endif
+    textureStore(bounced, id, vec4f(min(light, vec3f(MOST_LIGHT)), 1.0));
 }

@@ -8,7 +8,7 @@
 // What the bounce before had brought, and how much more that was than the one before that.
 @group(0) @binding(7) var<storage, read_write> last: array<vec4f>;
 @group(0) @binding(8) var<storage, read_write> change: array<vec4f>;
-@group(0) @binding(9) var medium: texture_storage_3d<rgba16float, write>;
+@group(0) @binding(9) var medium: texture_storage_3d<TARGET_FORMAT, write>;
 
 @group(0) @binding(10) var<storage, read> ratio: array<vec4f>;
 
@@ -43,6 +43,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     last[at] = vec4f(light, 0.0);
     if (found.a > 0.0) {
         let given = min(first[at].rgb + found.rgb * light, vec3f(MOST_LIGHT));
+#if ONE_COLOR
+        textureStore(medium, id + 1u, vec4f(given.r, found.a, 0.0, 0.0));
+#else
         textureStore(medium, id + 1u, vec4f(given, found.a));
+#endif
     }
 }

@@ -6,10 +6,49 @@
 #import "common/slab_source.wgsl"
 #import "common/most_light.wgsl"
 
-// In rgb what blocks give off per shortest edge, S times extinction; extinction in a.
+// What blocks give off per shortest edge, S times extinction, and extinction: in rgb and a, or in r and g.
 @group(0) @binding(1) var medium: texture_3d<f32>;
 @group(0) @binding(2) var clamped: sampler;
-@group(0) @binding(3) var sheets: texture_storage_3d<rgba16float, write>;
+@group(0) @binding(3) var sheets: texture_storage_3d<TARGET_FORMAT, write>;
+
+// Of light that has one colour all through its amount is followed: a third of the numbers.
+#if ONE_COLOR
+alias Light = f32;
+
+fn arriving_of(rays: SkyRays) -> Light {
+    return rays.arriving.r;
+}
+
+fn given_in(found: vec4f) -> Light {
+    return found.r;
+}
+
+fn extinction_in(found: vec4f) -> f32 {
+    return found.g;
+}
+
+fn texel_of(light: Light) -> vec4f {
+    return vec4f(light);
+}
+#else
+alias Light = vec3f;
+
+fn arriving_of(rays: SkyRays) -> Light {
+    return rays.arriving;
+}
+
+fn given_in(found: vec4f) -> Light {
+    return found.rgb;
+}
+
+fn extinction_in(found: vec4f) -> f32 {
+    return found.a;
+}
+
+fn texel_of(light: Light) -> vec4f {
+    return vec4f(light, 0.0);
+}
+#endif
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -23,14 +62,16 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let last = size.x - 1.0;
     let start = vec2f(id.xy) + rays.first;
     let span = slices_of_ray(rays, start, size);
-    var light = rays.arriving;
+    var light = arriving_of(rays);
     for (var n = span.x; n <= span.y; n += 1.0) {
         let slice = select(last - n, n, rays.rises == 1u);
         let block = turned_from(rays, vec3f(slice, start + rays.drift * n));
         let found = textureSampleLevel(medium, clamped, (block + 1.5) * sweep.block_scale, 0.0) * rays.step;
-        let share = slab_source(found.a);
-        let mean = 1.0 - found.a * share;
-        textureStore(sheets, vec3u(id.xy, rays.layer + u32(n)), vec4f(min(light * mean + found.rgb * share, vec3f(MOST_LIGHT)), 0.0));
-        light = light * exp(-found.a) + found.rgb * mean;
+        let tau = extinction_in(found);
+        let given = given_in(found);
+        let share = slab_source(tau);
+        let mean = 1.0 - tau * share;
+        textureStore(sheets, vec3u(id.xy, rays.layer + u32(n)), texel_of(min(light * mean + given * share, Light(MOST_LIGHT))));
+        light = light * exp(-tau) + given * mean;
     }
 }

@@ -24,7 +24,7 @@ var<private> average: Average;
 // Of the points before, and with these.
 @group(0) @binding(6) var before: texture_3d<f32>;
 @group(0) @binding(7) var after: texture_storage_3d<r32float, write>;
-@group(0) @binding(8) var attenuation: texture_storage_3d<ATTENUATION_FORMAT, write>;
+@group(0) @binding(8) var attenuation: texture_storage_3d<TARGET_FORMAT, write>;
 
 // Points that are added, up to four; whether they are the first and the last.
 override ADDED: u32 = 1u;

@@ -42,7 +42,7 @@ var<private> view: Backprojection;
 // Four slabs to a texel.
 @group(0) @binding(2) var ring: texture_2d_array<f32>;
 @group(0) @binding(3) var ring_sampler: sampler;
-@group(0) @binding(4) var attenuation: texture_storage_3d<ATTENUATION_FORMAT, write>;
+@group(0) @binding(4) var attenuation: texture_storage_3d<TARGET_FORMAT, write>;
 
 // The first sheet that touches a voxel alone decides (the paper's mode without weight volume).
 override FIRST_TOUCH: bool = false;

@@ -2,7 +2,7 @@
 #import "common/listed_bricks.wgsl"
 
 @group(0) @binding(0) var<storage, read> bricks: array<vec4u>;
-@group(0) @binding(1) var attenuation: texture_storage_3d<ATTENUATION_FORMAT, write>;
+@group(0) @binding(1) var attenuation: texture_storage_3d<TARGET_FORMAT, write>;
 
 @compute @workgroup_size(8, 8, 4)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {

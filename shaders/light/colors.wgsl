@@ -5,7 +5,7 @@
 @group(0) @binding(1) var red: texture_3d<f32>;
 @group(0) @binding(2) var green: texture_3d<f32>;
 @group(0) @binding(3) var blue: texture_3d<f32>;
-@group(0) @binding(4) var attenuation: texture_storage_3d<ATTENUATION_FORMAT, write>;
+@group(0) @binding(4) var attenuation: texture_storage_3d<TARGET_FORMAT, write>;
 
 @compute @workgroup_size(8, 8, 4)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {

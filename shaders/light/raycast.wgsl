@@ -27,7 +27,7 @@ var<private> raycast: Raycast;
 // g: distance to the nearest cell that attenuates light.
 @group(0) @binding(2) var distances: texture_3d<f32>;
 @group(0) @binding(3) var<storage, read> bricks: array<vec4u>;
-@group(0) @binding(4) var attenuation: texture_storage_3d<ATTENUATION_FORMAT, write>;
+@group(0) @binding(4) var attenuation: texture_storage_3d<TARGET_FORMAT, write>;
 
 // All light is followed here, or one of its colours: what is met is one number.
 fn ray_extinction(frame: SheetFrame, ray: Ray, k: f32) -> Left {

@@ -6,7 +6,7 @@
 @group(0) @binding(0) var<storage, read> bricks: array<vec4u>;
 @group(0) @binding(1) var<storage, read> light: array<i32>;
 @group(0) @binding(2) var<storage, read> weights: array<i32>;
-@group(0) @binding(3) var attenuation: texture_storage_3d<ATTENUATION_FORMAT, write>;
+@group(0) @binding(3) var attenuation: texture_storage_3d<TARGET_FORMAT, write>;
 
 @compute @workgroup_size(8, 8, 4)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {

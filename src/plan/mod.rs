@@ -28,7 +28,7 @@ pub use self::geometry::slice_order::SliceOrder;
 pub use self::geometry::sweep::{SweepFrame, directions_above, sweep_directions};
 pub use keys::{
     Attenuation, BouncesKey, CombinedKey, DisplayKey, EyeKey, EyeTableKey, FloorKey, FrameKeys, LightKey,
-    LitLight, LitLights, OpacityKey, SkyKey, TablesKey,
+    LitLight, LitLights, OneColor, OpacityKey, SkyKey, TablesKey,
 };
 pub use probe::{Arrival, Probe, probe};
 pub use request::{RenderOptions, Request, VolumeKey};

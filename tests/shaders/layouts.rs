@@ -245,7 +245,7 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
         ),
         ("scatter/footprints.wgsl", layout!(Phase { u, v, brick_u, brick_v, stride, pad0, pad1, pad2 })),
         ("eye/gather.wgsl", layout!(Bounces { lookup, ahead, share, pad0, pad1, pad2 })),
-        ("bounces/gather.wgsl", layout!(Bounce { dims, share, least, pad0, pad1, pad2 })),
+        ("bounces/gather.wgsl", layout!(Bounce { dims, share, color, least })),
         (
             "bounces/first.wgsl",
             layout!(First {

@@ -7,13 +7,54 @@ use super::{Bench, STEP_DEG};
 use crate::cli::CliError;
 use crate::model::{Resolution, Settings, SkyMode};
 
-/// Bounces, directions and resolutions that are timed.
-const BUILDS: [(u32, u32, Resolution); 4] = [
-    (3, 14, Resolution::Quarter),
-    (4, 64, Resolution::Quarter),
-    (8, 64, Resolution::Quarter),
-    (4, 64, Resolution::Half),
+/// A filling that is timed.
+struct Build {
+    bounces: u32,
+    directions: u32,
+    resolution: Resolution,
+    /// Whether everything is grey, and light has one colour.
+    one_color: bool,
+    /// What it may take at most, where that was settled.
+    bound: Option<f64>,
+}
+
+const fn build(bounces: u32, directions: u32, resolution: Resolution) -> Build {
+    Build { bounces, directions, resolution, one_color: false, bound: None }
+}
+
+const BUILDS: [Build; 6] = [
+    build(3, 14, Resolution::Quarter),
+    Build { bound: Some(4.0), ..build(8, 14, Resolution::Quarter) },
+    Build { bound: Some(2.5), one_color: true, ..build(8, 14, Resolution::Quarter) },
+    build(4, 64, Resolution::Quarter),
+    build(8, 64, Resolution::Quarter),
+    build(4, 64, Resolution::Half),
 ];
+
+impl Build {
+    /// A look in which it happens.
+    fn look(&self, lit: &Settings) -> Settings {
+        let Self { bounces, directions, resolution, one_color, bound: _ } = *self;
+        let mut settings = lit.clone();
+        settings.scattering.bounces = bounces;
+        (settings.scattering.directions, settings.scattering.resolution) = (directions, resolution);
+        if one_color {
+            for light in &mut settings.lights {
+                light.color = [1.0; 3];
+            }
+            for point in &mut settings.transfer.points {
+                point.color = [point.color[1]; 3];
+            }
+        }
+        settings
+    }
+
+    fn name(&self) -> String {
+        let Self { bounces, directions, resolution, one_color, bound: _ } = self;
+        let colors = if *one_color { "_of_one_color" } else { "" };
+        format!("{bounces}_bounces{colors}_in_{directions}_directions_at_1/{}", resolution.divisor())
+    }
+}
 
 impl Bench<'_> {
     /// Fillings of the volume of bounced light in units of B, the filling of one parallel light with the B-spline both ways;
@@ -24,26 +65,20 @@ impl Bench<'_> {
         ratios: &mut Map<String, Value>,
     ) -> Result<(), CliError> {
         let lit = self.under_one_light();
-        let bouncing = |bounces: u32, directions: u32, resolution: Resolution| {
-            let mut settings = lit.clone();
-            settings.scattering.bounces = bounces;
-            (settings.scattering.directions, settings.scattering.resolution) = (directions, resolution);
-            settings
-        };
-        let looks = BUILDS.map(|(bounces, directions, resolution)| bouncing(bounces, directions, resolution));
+        let looks = BUILDS.map(|build| build.look(&lit));
         // Lights stay as they are: what is timed is what bounces.
         let denser = |settings: &mut Settings, scale: f64| settings.scattering.density_scale *= scale;
         let (one_light, builds) = self.fillings(&lit, &looks, denser)?;
         let unit = one_light.light_build();
         ratios.insert("one_light_ms".to_owned(), json!(round(unit)));
-        for ((bounces, directions, resolution), samples) in BUILDS.into_iter().zip(&builds) {
-            let divisor = resolution.divisor();
-            ratios.insert(
-                format!("{bounces}_bounces_in_{directions}_directions_at_1/{divisor}"),
-                json!({ "measured": round(samples.bounces() / unit) }),
-            );
+        for (build, samples) in BUILDS.iter().zip(&builds) {
+            let mut found = json!({ "measured": round(samples.bounces() / unit) });
+            if let Some(bound) = build.bound {
+                found["bound"] = json!(bound);
+            }
+            ratios.insert(build.name(), found);
         }
-        let mut everything = bouncing(8, 14, Resolution::Quarter);
+        let mut everything = build(8, 14, Resolution::Quarter).look(&lit);
         everything.sky.mode = SkyMode::Gradient;
         let pair = [lit.clone(), everything];
         let turned =

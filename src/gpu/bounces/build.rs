@@ -7,7 +7,7 @@ use super::volume::BouncesVolume;
 use crate::gpu::light::packed::pack_light;
 use crate::gpu::pipelines::binding::{Named, buffer, sampler, view_of};
 use crate::gpu::pipelines::uniforms;
-use crate::gpu::pipelines::variant::{Constants, Only, Variant, flag};
+use crate::gpu::pipelines::variant::{ColorVariant, Constants, Only, Variant, flag};
 use crate::gpu::resources::pass;
 use crate::gpu::sky::blocks::BlocksPass;
 use crate::gpu::sky::sweep::{BATCH_BLOCKS, GatherVariant, SweepPass};
@@ -15,7 +15,7 @@ use crate::gpu::volume::Gpu;
 use crate::gpu::volume::transfer_tables::Tables;
 use crate::gpu::{GpuError, RenderOptions};
 use crate::model::{MAX_LIGHTS, Settings};
-use crate::plan::{BouncesKey, LitLights, SweepFrame, sweep_directions};
+use crate::plan::{BouncesKey, LitLights, OneColor, SweepFrame, sweep_directions};
 
 /// A piece of the filling.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -67,6 +67,8 @@ pub(crate) struct BouncesBuild {
     /// Points that stand for a light that has a size.
     points: u32,
     has_sky: bool,
+    /// That of all light, if there is one.
+    one_color: Option<OneColor>,
     textures: Textures,
 }
 
@@ -91,7 +93,9 @@ impl BouncesBuild {
         let sheet = [0, 1]
             .map(|side| frames.iter().flatten().map(|frame| frame.size[side] as usize).max().unwrap_or(1));
         let each = directions_of_a_batch(volume.dims, sheet);
-        let textures = Textures::new(gpu.context, volume, sheet, each)?;
+        let one_color = key.one_color();
+        let slices = volume.dims.into_iter().max().unwrap_or(1) * each;
+        let textures = Textures::new(gpu.context, volume, [sheet[0], sheet[1], slices], one_color.is_some())?;
         let rays = (lights * key.points() as usize).max(1);
         Ok(Self {
             frames,
@@ -101,6 +105,7 @@ impl BouncesBuild {
             bounces: key.bounces(),
             points: key.points(),
             has_sky,
+            one_color,
             textures,
         })
     }
@@ -165,14 +170,25 @@ impl BouncesBuild {
                 if leaps {
                     self.whole(gpu, &Only("bounces/ratio.wgsl"), &shared, volume, encoder)?;
                 }
-                let source = SourceVariant { has_bounced: bounce > 0, leaps };
+                let one_color = self.one_color.is_some();
+                let source = SourceVariant { has_bounced: bounce > 0, leaps, one_color };
                 self.whole(gpu, &source, &shared, volume, encoder)
             }
             BounceStep::Outcome => {
                 let shared = self.shared(gpu, volume, Followed::Last);
-                self.whole(gpu, &Only("bounces/outcome.wgsl"), &shared, volume, encoder)
+                self.whole(gpu, &self.variant("bounces/outcome.wgsl"), &shared, volume, encoder)
             }
         }
+    }
+
+    /// What is followed of some light: its amount, where all has one colour.
+    fn followed_of(&self, light: DVec3) -> DVec3 {
+        self.one_color.map_or(light, |one| DVec3::splat(one.amount(light)))
+    }
+
+    /// A shader that reads what is followed.
+    fn variant(&self, shader: &'static str) -> ColorVariant {
+        ColorVariant { shader, one_color: self.one_color.is_some() }
     }
 
     /// What passes over blocks share: those in which light is scattered, or for the last bounce all of them.
@@ -180,10 +196,8 @@ impl BouncesBuild {
         let uniform = uniforms::Bounce {
             dims: volume.dims.map(|n| n as u32),
             share: 1.0 / self.frames(followed).len() as f32,
+            color: self.one_color.map_or([1.0; 3], |one| one.color.as_vec3().into()),
             least: if followed == Followed::Last { -1.0 } else { f32::MIN_POSITIVE },
-            pad0: 0.0,
-            pad1: 0.0,
-            pad2: 0.0,
         };
         gpu.uniform("Bounces::shared", uniform)
     }
@@ -202,6 +216,8 @@ impl BouncesBuild {
             divisor: volume.divisor,
             density_scale: scattering.density_scale,
             albedo: scattering.albedo,
+            one_color: self.one_color.is_some(),
+            format: self.textures.medium_format,
             tables,
             settings,
             options,
@@ -224,30 +240,31 @@ impl BouncesBuild {
         (followed, batch): (Followed, usize),
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let Textures { medium, sheets, sheet_size, scattering, sums, .. } = &self.textures;
+        let Textures { medium, sheets, scattering, sums, .. } = &self.textures;
         let radiance = settings.sky.radiance(settings.camera.up).filter(|_| followed == Followed::Sky);
         let arriving = |towards: DVec3| {
-            radiance.map_or(DVec3::ZERO, |sky| {
-                DVec3::from(std::array::from_fn(|c| (sky.mean[c] + sky.slope[c].dot(towards)).max(0.0)))
-            })
+            let of =
+                |c: usize| radiance.map_or(0.0, |sky| (sky.mean[c] + sky.slope[c].dot(towards)).max(0.0));
+            self.followed_of(DVec3::from([0, 1, 2].map(of)))
         };
         let frames = self.frames(followed).chunks(self.each).nth(batch).unwrap_or_default();
         let pass = SweepPass {
             shader: "bounces/sweep.wgsl",
+            one_color: self.one_color.is_some(),
             frames,
             dims: volume.dims,
-            sheet_size: *sheet_size,
+            sheets,
             is_first: batch == 0,
             share: 0.0,
         };
-        let uniform = pass.record(gpu, view_of("medium", medium), sheets, arriving, encoder)?;
+        let uniform = pass.record(gpu, view_of("medium", medium), arriving, encoder)?;
 
         let gather =
             gpu.shaders.pipeline(&GatherVariant { shader: "bounces/gather.wgsl", directions: self.each })?;
         let shared = self.shared(gpu, volume, followed);
         let entries = [
             buffer("bound_sweep", &uniform),
-            view_of("sheets", sheets),
+            view_of("sheets", &sheets.view),
             sampler("clamped", &gpu.volume.clamped),
             buffer("bound_bounce", &shared),
             buffer("scattering", scattering),
@@ -274,7 +291,8 @@ impl BouncesBuild {
             let whole = pack_light(&lit.light, None, scene, settings);
             // Only shadows show how large a light is.
             let points = if index < shadowed { self.points } else { 1 };
-            *slot = uniforms::Light { points: whole.points.min(points), ..whole };
+            let color = self.followed_of(DVec3::from(whole.color.map(f64::from))).as_vec3().into();
+            *slot = uniforms::Light { points: whole.points.min(points), color, ..whole };
         }
         let uniform = uniforms::First {
             space: uniforms::Space::new(scene),
@@ -292,7 +310,7 @@ impl BouncesBuild {
         };
         let uniform = gpu.uniform("Bounces::first", uniform);
         let shared = self.shared(gpu, volume, Followed::Sky);
-        let pipeline = gpu.shaders.pipeline(&Only("bounces/first.wgsl"))?;
+        let pipeline = gpu.shaders.pipeline(&self.variant("bounces/first.wgsl"))?;
         let entries = [
             buffer("bound_scene", &uniform),
             view_of("medium", &self.textures.medium),
@@ -338,7 +356,7 @@ impl BouncesBuild {
             ]),
             _ => entries.push(view_of("bounced", &volume.view)),
         }
-        let pipeline = gpu.shaders.pipeline(variant)?;
+        let pipeline = gpu.shaders.pipeline_into(variant, self.textures.medium_format)?;
         let own = gpu.bind("Bounces::whole", &pipeline, 0, &entries);
         let groups = if shader == "bounces/ratio.wgsl" { [1; 3] } else { groups_of(volume) };
         pass::dispatch(encoder, "Bounces::whole", &pipeline, &[&own], groups);
@@ -355,6 +373,7 @@ fn groups_of(volume: &BouncesVolume) -> [u32; 3] {
 struct SourceVariant {
     has_bounced: bool,
     leaps: bool,
+    one_color: bool,
 }
 
 impl Variant for SourceVariant {
@@ -363,6 +382,10 @@ impl Variant for SourceVariant {
     }
 
     fn constants(&self) -> Constants {
-        vec![flag("HAS_BOUNCED", self.has_bounced), flag("LEAPS", self.leaps)]
+        vec![
+            flag("HAS_BOUNCED", self.has_bounced),
+            flag("LEAPS", self.leaps),
+            flag("ONE_COLOR", self.one_color),
+        ]
     }
 }

@@ -1,7 +1,9 @@
 //! What only the filling of a volume of bounced light needs.
 
 use super::volume::BouncesVolume;
+use crate::gpu::context::pair_format;
 use crate::gpu::pipelines::uniforms;
+use crate::gpu::sky::sheets::RaySheets;
 use crate::gpu::sky::sweep::{BATCH_BLOCKS, MOST_LAYERS};
 use crate::gpu::sky::volume::SUM_BYTES;
 use crate::gpu::volume::texture_3d;
@@ -15,9 +17,10 @@ const BATCH_TEXELS: usize = 1 << 24;
 pub(super) struct Textures {
     /// What blocks give off, and their optical depth, with one of nothing around the grid.
     pub medium: wgpu::TextureView,
-    /// The light along rays: columns and rows of them, and a layer for each slice of each direction.
-    pub sheets: wgpu::TextureView,
-    pub sheet_size: [usize; 3],
+    /// The format of that.
+    pub medium_format: wgpu::TextureFormat,
+    /// The light along rays.
+    pub sheets: RaySheets,
     /// What blocks scatter, and their optical depth.
     pub scattering: wgpu::Buffer,
     /// What they give off of unscattered light.
@@ -34,25 +37,27 @@ pub(super) struct Textures {
 }
 
 impl Textures {
-    /// Room for the filling of a volume, where a direction has so many columns and rows of rays, and a batch so many
-    /// directions.
+    /// Room for the filling of a volume, where the rays of a batch of directions have so many columns, rows and slices; of
+    /// light that has one colour all through, or of three colours.
     ///
     /// # Errors
     /// When memory is out.
     pub(super) fn new(
         context: &Context,
         volume: &BouncesVolume,
-        [width, height]: [usize; 2],
-        each: usize,
+        [width, height, slices]: [usize; 3],
+        one_color: bool,
     ) -> Result<Self, GpuError> {
         let dims = volume.dims;
         let usages = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
-        let format = wgpu::TextureFormat::Rgba16Float;
-        let slices = dims.into_iter().max().unwrap_or(1);
-        let sheet_size = [width, height, slices * each];
+        let (medium_format, sheet_format) = if one_color {
+            (pair_format(context.storage_format), context.storage_format)
+        } else {
+            (wgpu::TextureFormat::Rgba16Float, wgpu::TextureFormat::Rgba16Float)
+        };
         let medium_size = dims.map(|n| n + 2);
-        let medium = context.texture(&texture_3d("Bounces::medium", medium_size, format, usages))?;
-        let sheets = context.texture(&texture_3d("Bounces::sheets", sheet_size, format, usages))?;
+        let medium = context.texture(&texture_3d("Bounces::medium", medium_size, medium_format, usages))?;
+        let sheets = RaySheets::new(context, [width, height, slices], sheet_format)?;
         let texels = |size: [usize; 3]| size.iter().map(|&n| n as u64).product::<u64>();
         let list = |label, count: u64| {
             context.empty_buffer(&wgpu::BufferDescriptor {
@@ -63,18 +68,18 @@ impl Textures {
             })
         };
         let blocks = texels(dims);
-        let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let texel = u64::from(medium_format.block_copy_size(None).unwrap_or(8));
         Ok(Self {
-            medium: view(&medium),
-            sheets: view(&sheets),
-            sheet_size,
+            medium: medium.create_view(&wgpu::TextureViewDescriptor::default()),
+            medium_format,
             scattering: list("Bounces::scattering", blocks),
             first: list("Bounces::first", blocks),
             sums: list("Bounces::sums", blocks),
             last: list("Bounces::last", blocks),
             change: list("Bounces::change", blocks),
             ratio: list("Bounces::ratio", 1),
-            bytes: 8 * (texels(medium_size) + texels(sheet_size)) + SUM_BYTES * (5 * blocks + 1),
+            bytes: texel * texels(medium_size) + sheets.bytes() + SUM_BYTES * (5 * blocks + 1),
+            sheets,
         })
     }
 }

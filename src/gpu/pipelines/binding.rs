@@ -63,8 +63,8 @@ pub(crate) enum Format {
     Storage,
     /// That of two such channels beside each other.
     Pair,
-    /// That of the light volume which the pipeline writes.
-    Attenuation,
+    /// The one that the pipeline is made for: that of a light volume, say.
+    Target,
     /// That of the ring of sheets.
     Ring,
 }
@@ -105,11 +105,11 @@ impl Slot {
         Self { number, name, kind: Kind::Sampler }
     }
 
-    /// The entry of a layout, for light volumes of a format, where single channels are stored in `storage`.
+    /// The entry of a layout, for targets of a format, where single channels are stored in `storage`.
     pub(crate) fn entry(
         self,
         storage: wgpu::TextureFormat,
-        attenuation: wgpu::TextureFormat,
+        target: wgpu::TextureFormat,
     ) -> wgpu::BindGroupLayoutEntry {
         let buffer = |ty, bytes| wgpu::BindingType::Buffer {
             ty,
@@ -134,7 +134,7 @@ impl Slot {
                 format: match format {
                     Format::Of(format) => format,
                     Format::Storage => storage,
-                    Format::Attenuation => attenuation,
+                    Format::Target => target,
                     Format::Pair => pair_format(storage),
                     Format::Ring => ring_format(storage),
                 },
@@ -192,9 +192,8 @@ pub(crate) struct Group {
 
 impl Group {
     /// A group whose layout follows from its slots.
-    pub(crate) fn new(context: &Context, slots: &'static [Slot], attenuation: wgpu::TextureFormat) -> Self {
-        let entries: Vec<_> =
-            slots.iter().map(|slot| slot.entry(context.storage_format, attenuation)).collect();
+    pub(crate) fn new(context: &Context, slots: &'static [Slot], target: wgpu::TextureFormat) -> Self {
+        let entries: Vec<_> = slots.iter().map(|slot| slot.entry(context.storage_format, target)).collect();
         let layout = context.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: slots.first().map(|slot| slot.name),
             entries: &entries,

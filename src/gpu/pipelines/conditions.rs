@@ -8,7 +8,7 @@
 use crate::gpu::GpuError;
 
 /// Names that stand in conditions alone, which drivers are not told.
-const TEXT_ALONE: [&str; 10] = [
+const TEXT_ALONE: [&str; 11] = [
     "FACES",
     "MISSING",
     "PRECLASSIFY",
@@ -19,6 +19,7 @@ const TEXT_ALONE: [&str; 10] = [
     "BOUNCES",
     "ANISOTROPIC",
     "COLORED",
+    "ONE_COLOR",
 ];
 
 /// Names that are override constants as well.

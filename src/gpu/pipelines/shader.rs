@@ -22,7 +22,7 @@ pub struct ShaderLibrary {
     /// Replacements in the joined source; see [`Self::with_mutation`].
     mutation: Option<(String, String)>,
     pipelines: Arc<Mutex<HashMap<PipelineKey, Pipeline>>>,
-    /// Groups of bindings, by the address of their slots and the format of light volumes.
+    /// Groups of bindings, by the address of their slots and the format of targets.
     groups: Arc<Mutex<HashMap<GroupKey, Group>>>,
     cache: Option<PipelineCache>,
 }
@@ -61,18 +61,18 @@ impl ShaderLibrary {
         Self { mutation: Some((from.to_owned(), to.to_owned())), ..Self::new(context) }
     }
 
-    /// A shader with everything that it imports and all its conditional parts, for storage textures of `format`, and light
-    /// volumes of `attenuation`.
+    /// A shader with everything that it imports and all its conditional parts, for storage textures of `format`, and
+    /// targets of `target`.
     ///
     /// # Errors
     /// When a file is not there.
     pub fn source(
         name: &str,
         format: wgpu::TextureFormat,
-        attenuation: wgpu::TextureFormat,
+        target: wgpu::TextureFormat,
     ) -> Result<String, GpuError> {
         // More than any bound of a condition: all lights are shadowed.
-        Self::source_where(name, format, attenuation, &|_| f64::INFINITY)
+        Self::source_where(name, format, target, &|_| f64::INFINITY)
     }
 
     /// A shader with those of its conditional parts (`conditions.rs`) whose conditions hold; `value` tells the numbers in
@@ -83,7 +83,7 @@ impl ShaderLibrary {
     pub fn source_where(
         name: &str,
         format: wgpu::TextureFormat,
-        attenuation: wgpu::TextureFormat,
+        target: wgpu::TextureFormat,
         value: &dyn Fn(&str) -> f64,
     ) -> Result<String, GpuError> {
         let mut joined = String::new();
@@ -94,6 +94,8 @@ impl ShaderLibrary {
             wgpu::TextureFormat::R8Unorm => "r8unorm",
             wgpu::TextureFormat::Rgba8Unorm => "rgba8unorm",
             wgpu::TextureFormat::Rgba16Float => "rgba16float",
+            wgpu::TextureFormat::Rg16Float => "rg16float",
+            wgpu::TextureFormat::Rg32Float => "rg32float",
             _ => "r16float",
         };
         let ring = match ring_format(format) {
@@ -107,7 +109,7 @@ impl ShaderLibrary {
         Ok(joined
             .replace("STORAGE_FORMAT", wgsl(format))
             .replace("PAIR_FORMAT", pair)
-            .replace("ATTENUATION_FORMAT", wgsl(attenuation))
+            .replace("TARGET_FORMAT", wgsl(target))
             .replace("RING_FORMAT", ring))
     }
 
@@ -119,23 +121,23 @@ impl ShaderLibrary {
         self.pipeline_into(variant, self.context.storage_format)
     }
 
-    /// The pipeline of a variant that writes a light volume of some format.
+    /// The pipeline of a variant that writes into textures of some format.
     ///
     /// # Errors
     /// As [`Self::pipeline`].
     pub(crate) fn pipeline_into(
         &self,
         variant: &impl Variant,
-        attenuation: wgpu::TextureFormat,
+        target: wgpu::TextureFormat,
     ) -> Result<Pipeline, GpuError> {
         let (shader, constants) = (variant.shader(), variant.constants());
-        let key = PipelineKey::new(shader, &constants, attenuation);
+        let key = PipelineKey::new(shader, &constants, target);
         let pipelines = || self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(pipeline) = pipelines().get(&key) {
             return Ok(pipeline.clone());
         }
         // Not locked meanwhile: a window must not wait for the variants that another thread makes.
-        let pipeline = self.make(shader, &constants, attenuation)?;
+        let pipeline = self.make(shader, &constants, target)?;
         pipelines().insert(key, pipeline.clone());
         Ok(pipeline)
     }
@@ -146,14 +148,14 @@ impl ShaderLibrary {
     }
 
     /// The groups of bindings of a shader, of which equal ones are shared by all.
-    fn groups_of(&self, shader: &str, attenuation: wgpu::TextureFormat) -> Result<Arc<[Group]>, GpuError> {
+    fn groups_of(&self, shader: &str, target: wgpu::TextureFormat) -> Result<Arc<[Group]>, GpuError> {
         let declared = layouts().find(|(known, _)| *known == shader);
         let (_, groups) =
             declared.ok_or_else(|| GpuError::Refused(format!("there is no layout for {shader}")))?;
         let mut known = self.groups.lock().unwrap_or_else(PoisonError::into_inner);
         let group = |slots: &&'static [Slot]| {
-            let fresh = || Group::new(&self.context, slots, attenuation);
-            known.entry((slots, attenuation)).or_insert_with(fresh).clone()
+            let fresh = || Group::new(&self.context, slots, target);
+            known.entry((slots, target)).or_insert_with(fresh).clone()
         };
         Ok(groups.iter().map(group).collect())
     }
@@ -162,7 +164,7 @@ impl ShaderLibrary {
         &self,
         shader: &'static str,
         constants: &[(&'static str, f64)],
-        attenuation: wgpu::TextureFormat,
+        target: wgpu::TextureFormat,
     ) -> Result<Pipeline, GpuError> {
         // Mesa's compiler does not look whether it got the memory that it asked for, and ends the program.
         if self.context.is_software() {
@@ -171,7 +173,7 @@ impl ShaderLibrary {
         let value = |wanted: &str| {
             constants.iter().find(|(name, _)| *name == wanted).map_or(0.0, |(_, value)| *value)
         };
-        let mut source = Self::source_where(shader, self.context.storage_format, attenuation, &value)?;
+        let mut source = Self::source_where(shader, self.context.storage_format, target, &value)?;
         let overrides: Vec<_> = constants.iter().filter(|(name, _)| is_override(name)).copied().collect();
         if let Some((from, to)) = &self.mutation {
             source = source.replace(from, to);
@@ -179,7 +181,7 @@ impl ShaderLibrary {
         if fault::is_on(Fault::Shader) {
             source.push_str("a fault was asked for");
         }
-        let groups = self.groups_of(shader, attenuation)?;
+        let groups = self.groups_of(shader, target)?;
         let device = &self.context.device;
         let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -193,7 +195,7 @@ impl ShaderLibrary {
             immediate_size: 0,
         });
         let raw = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(&format!("{shader} {constants:?} {attenuation:?}")),
+            label: Some(&format!("{shader} {constants:?} {target:?}")),
             layout: Some(&layout),
             module: &module,
             entry_point: Some("main"),
@@ -210,27 +212,23 @@ impl ShaderLibrary {
     }
 }
 
-/// Where the slots of a group are declared, and the format of light volumes.
+/// Where the slots of a group are declared, and the format of targets.
 type GroupKey = (&'static [Slot], wgpu::TextureFormat);
 
-/// A shader with its override constants, whatever their order, and the format of light volumes that it writes.
+/// A shader with its override constants, whatever their order, and the format of the targets that it writes.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 struct PipelineKey {
     shader: &'static str,
     /// Names and the bits of their values, by name.
     constants: Vec<(&'static str, u64)>,
-    attenuation: wgpu::TextureFormat,
+    target: wgpu::TextureFormat,
 }
 
 impl PipelineKey {
-    fn new(
-        shader: &'static str,
-        constants: &[(&'static str, f64)],
-        attenuation: wgpu::TextureFormat,
-    ) -> Self {
+    fn new(shader: &'static str, constants: &[(&'static str, f64)], target: wgpu::TextureFormat) -> Self {
         let mut constants: Vec<_> = constants.iter().map(|(name, value)| (*name, value.to_bits())).collect();
         constants.sort_unstable();
-        Self { shader, constants, attenuation }
+        Self { shader, constants, target }
     }
 }
 

@@ -31,6 +31,24 @@ impl Variant for Only {
     }
 }
 
+/// A shader that follows light, of three colours or of one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct ColorVariant {
+    pub shader: &'static str,
+    /// Whether all of it has one colour.
+    pub one_color: bool,
+}
+
+impl Variant for ColorVariant {
+    fn shader(&self) -> &'static str {
+        self.shader
+    }
+
+    fn constants(&self) -> Constants {
+        vec![flag("ONE_COLOR", self.one_color)]
+    }
+}
+
 /// A reconstruction kernel, as pipelines tell them apart (`shaders/density/kernel.wgsl`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum KernelVariant {

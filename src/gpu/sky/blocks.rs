@@ -22,6 +22,10 @@ pub(crate) struct BlocksPass<'a> {
     pub density_scale: f64,
     /// What of light that is met is scattered.
     pub albedo: f64,
+    /// Whether what is filled is for light that has one colour all through.
+    pub one_color: bool,
+    /// Of the texture that is filled.
+    pub format: wgpu::TextureFormat,
     pub tables: &'a Tables,
     pub settings: &'a Settings,
     pub options: &'a RenderOptions,
@@ -35,18 +39,19 @@ impl BlocksPass<'_> {
         entries: &[Named<'_>],
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let Self { shader, dims, divisor, density_scale, albedo, tables, settings, options } = *self;
+        let Self { shader, dims, divisor, density_scale, albedo, tables, settings, options, .. } = *self;
         let scene = &gpu.volume.scene;
         let shading = settings.cuts.shading();
         // Eight places, each as large as an eighth of a block; a voxel is one place.
         let level = (divisor as f64 / 2.0).max(1.0).log2();
         let variant = BlocksVariant {
             shader,
+            one_color: self.one_color,
             ends: gpu.volume.ends_of_all(),
             is_cut: is_cut(shading),
             classification: settings.sampling.classification,
         };
-        let pipeline = gpu.shaders.pipeline(&variant)?;
+        let pipeline = gpu.shaders.pipeline_into(&variant, self.format)?;
         let uniform = uniforms::Blocks {
             dims: dims.map(|n| n as u32),
             voxel_step: divisor as f32,
@@ -79,6 +84,7 @@ impl BlocksPass<'_> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct BlocksVariant {
     shader: &'static str,
+    one_color: bool,
     ends: Ends,
     is_cut: bool,
     classification: Classification,
@@ -91,6 +97,7 @@ impl Variant for BlocksVariant {
 
     fn constants(&self) -> Constants {
         let mut constants = self.ends.constants().to_vec();
+        constants.push(flag("ONE_COLOR", self.one_color));
         constants.push(flag("CUT", self.is_cut));
         constants.push(flag("PRECLASSIFY", self.classification == Classification::Pre));
         // What places are fetched from is the pyramid.

@@ -5,5 +5,6 @@
 
 pub(super) mod blocks;
 pub(super) mod floor_map;
+pub(super) mod sheets;
 pub(super) mod sweep;
 pub(super) mod volume;

@@ -6,10 +6,11 @@ use glam::DVec3;
 
 use super::blocks::BlocksPass;
 use super::floor_map::MAP_EDGE;
+use super::sheets::RaySheets;
 use super::volume::{SUM_BYTES, SkyVolume};
 use crate::gpu::pipelines::binding::{Named, buffer, sampler, view_of};
 use crate::gpu::pipelines::uniforms;
-use crate::gpu::pipelines::variant::{Constants, Only, Variant};
+use crate::gpu::pipelines::variant::{ColorVariant, Constants, Variant};
 use crate::gpu::resources::pass;
 use crate::gpu::volume::transfer_tables::Tables;
 use crate::gpu::volume::{Gpu, texture_3d};
@@ -42,9 +43,8 @@ pub(crate) struct SkyBuild {
 struct Textures {
     /// Optical depth of blocks, with one of nothing around the grid.
     blocks: wgpu::TextureView,
-    /// What rays deposit: columns and rows of rays, and a layer for each slice of each direction.
-    sheets: wgpu::TextureView,
-    sheet_size: [usize; 3],
+    /// What rays deposit.
+    sheets: RaySheets,
     /// Moments so far.
     sums: wgpu::Buffer,
     /// The same of the floor's map.
@@ -109,6 +109,8 @@ impl SkyBuild {
             divisor: volume.divisor,
             density_scale: self.density_scale,
             albedo: 0.0,
+            one_color: false,
+            format: gpu.context.storage_format,
             tables,
             settings,
             options,
@@ -124,7 +126,7 @@ impl SkyBuild {
         batch: usize,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let Textures { blocks, sheets, sheet_size, sums, .. } = &self.textures;
+        let Textures { blocks, sheets, sums, .. } = &self.textures;
         let around = self.batches_around();
         let (all, batch, is_above) =
             if batch < around { (&self.frames, batch, false) } else { (&self.above, batch - around, true) };
@@ -132,13 +134,14 @@ impl SkyBuild {
         let frames = &all[taken.clone()];
         let pass = SweepPass {
             shader: "sky/sweep.wgsl",
+            one_color: false,
             frames,
             dims: volume.dims,
-            sheet_size: *sheet_size,
+            sheets,
             is_first: batch == 0,
             share: 1.0 / taken.end as f32,
         };
-        let uniform = pass.record(gpu, view_of("extinction", blocks), sheets, |_| DVec3::ZERO, encoder)?;
+        let uniform = pass.record(gpu, view_of("extinction", blocks), |_| DVec3::ZERO, encoder)?;
         if is_above {
             return self.fill_floor(gpu, volume, &uniform, taken.end, encoder);
         }
@@ -146,7 +149,7 @@ impl SkyBuild {
             gpu.shaders.pipeline(&GatherVariant { shader: "sky/moments.wgsl", directions: self.each })?;
         let entries = [
             buffer("bound_sweep", &uniform),
-            view_of("sheets", sheets),
+            view_of("sheets", &sheets.view),
             sampler("clamped", &gpu.volume.clamped),
             buffer("sums", sums),
             view_of("moments", &volume.view),
@@ -174,7 +177,7 @@ impl SkyBuild {
         let entries = [
             buffer("bound_sweep", sweep),
             buffer("bound_map", &uniform),
-            view_of("sheets", &self.textures.sheets),
+            view_of("sheets", &self.textures.sheets.view),
             buffer("sums", sums),
             view_of("moments", &floor.view),
         ];
@@ -195,10 +198,9 @@ impl Textures {
         let usages = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
         let format = context.storage_format;
         let slices = dims.into_iter().max().unwrap_or(1);
-        let sheet_size = [width, height, slices * each];
         let block_size = dims.map(|n| n + 2);
         let blocks = context.texture(&texture_3d("Sky::blocks", block_size, format, usages))?;
-        let sheets = context.texture(&texture_3d("Sky::sheets", sheet_size, format, usages))?;
+        let sheets = RaySheets::new(context, [width, height, slices * each], format)?;
         let texels = |size: [usize; 3]| size.iter().map(|&n| n as u64).product::<u64>();
         let sums = |label, count: u64| {
             context.empty_buffer(&wgpu::BufferDescriptor {
@@ -213,12 +215,12 @@ impl Textures {
         let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
         Ok(Self {
             blocks: view(&blocks),
-            sheets: view(&sheets),
-            sheet_size,
             sums: sums("Sky::sums", texels(dims)),
             floor_sums: floor.map(|texels| sums("Sky::floor_sums", texels)),
-            bytes: texel * (texels(block_size) + texels(sheet_size))
+            bytes: texel * texels(block_size)
+                + sheets.bytes()
                 + SUM_BYTES * (texels(dims) + floor.unwrap_or(0)),
+            sheets,
         })
     }
 }
@@ -227,10 +229,13 @@ impl Textures {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SweepPass<'a> {
     pub shader: &'static str,
+    /// Whether light has one colour all through (`bounces/sweep.wgsl`).
+    pub one_color: bool,
     pub frames: &'a [SweepFrame],
     /// Blocks along x, y and z.
     pub dims: [usize; 3],
-    pub sheet_size: [usize; 3],
+    /// What is filled.
+    pub sheets: &'a RaySheets,
     /// Whether nothing has been summed before.
     pub is_first: bool,
     /// What of the sum up to this batch is shown.
@@ -238,17 +243,16 @@ pub(crate) struct SweepPass<'a> {
 }
 
 impl SweepPass<'_> {
-    /// Records it: light that arrives from directions goes through what `blocks` name, into sheets. Returns what the passes
+    /// Records it: light that arrives from directions goes through what `blocks` name, into the sheets. Returns what the passes
     /// that gather from these need to know.
     pub(crate) fn record(
         &self,
         gpu: Gpu<'_>,
         blocks: Named<'_>,
-        sheets: &wgpu::TextureView,
         arriving: impl Fn(DVec3) -> DVec3,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<wgpu::Buffer, GpuError> {
-        let Self { shader, frames, dims, sheet_size, is_first, share } = *self;
+        let Self { shader, one_color, frames, dims, sheets, is_first, share } = *self;
         let edge = gpu.volume.scene.smallest_edge();
         let slices = dims.into_iter().max().unwrap_or(1);
         // What is left over has no weight, and no rays.
@@ -262,17 +266,17 @@ impl SweepPass<'_> {
             share,
             block_scale: reciprocal(dims.map(|n| n + 2)),
             has_sums: if is_first { 0.0 } else { 1.0 },
-            sheet_scale: reciprocal(sheet_size),
+            sheet_scale: reciprocal(sheets.size),
             pad0: 0.0,
             rays,
         };
         let uniform = gpu.uniform("Sweep::uniform", uniform);
-        let pipeline = gpu.shaders.pipeline(&Only(shader))?;
+        let pipeline = gpu.shaders.pipeline_into(&ColorVariant { shader, one_color }, sheets.format)?;
         let entries = [
             buffer("bound_sweep", &uniform),
             blocks,
             sampler("clamped", &gpu.volume.clamped),
-            view_of("sheets", sheets),
+            view_of("sheets", &sheets.view),
         ];
         let own = gpu.bind("Sweep::own", &pipeline, 0, &entries);
         let across = |side: usize| frames.iter().map(|frame| frame.size[side]).max().unwrap_or(1).div_ceil(8);

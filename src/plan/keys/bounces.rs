@@ -1,6 +1,7 @@
 //! What the volume is made from that holds light which has bounced.
 
 use super::lit_lights::LitLights;
+use super::one_color::OneColor;
 use super::received::LightLook;
 use super::sky::SkyLook;
 use super::table::{EyeTableKey, OpacityKey};
@@ -23,6 +24,8 @@ pub struct BouncesKey {
     points: u32,
     sky: Option<SkyLook>,
     emission: f64,
+    /// That of all light, if there is one.
+    one_color: Option<OneColor>,
     albedo: f64,
     density_scale: f64,
     bounces: u32,
@@ -68,6 +71,7 @@ impl BouncesKey {
             points: if has_area { settings.shadows.area.samples.min(MOST_POINTS) } else { 1 },
             sky: SkyLook::of(settings),
             emission: settings.shading.emission,
+            one_color: OneColor::of(settings),
             albedo,
             density_scale,
             bounces,
@@ -87,6 +91,11 @@ impl BouncesKey {
             points: 1,
             ..self.clone()
         }
+    }
+
+    /// The colour of all light, if there is one.
+    pub fn one_color(&self) -> Option<OneColor> {
+        self.one_color
     }
 
     /// How many bounces are followed.

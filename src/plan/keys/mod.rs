@@ -9,6 +9,7 @@ mod display;
 mod eye;
 mod light;
 mod lit_lights;
+mod one_color;
 mod received;
 mod sky;
 mod table;
@@ -21,6 +22,7 @@ pub use display::DisplayKey;
 pub use eye::{EyeKey, FloorKey};
 pub use light::LightKey;
 pub use lit_lights::{Attenuation, LitLight, LitLights};
+pub use one_color::OneColor;
 pub use sky::SkyKey;
 pub use table::{EyeTableKey, OpacityKey, TablesKey};
 

@@ -1,15 +1,17 @@
 //! Light that bounces against the reference: the volume of it, and pictures.
 
 use chiaroscuro::data::{Dataset, Volume};
-use chiaroscuro::gpu::Renderer;
+use chiaroscuro::gpu::{Renderer, ShaderLibrary};
 use chiaroscuro::model::{
     Classification, CropBox, CutEffect, Engine, Hood, Light, LightKind, LightShape, Resolution, Scattering,
     Settings, ShadowAlgorithm, Sides, Sky, SkyMode,
 };
+use chiaroscuro::plan::OneColor;
 use chiaroscuro::reference::{Bounced, Fault, Options, Reference};
 use glam::DVec3;
 
 use super::check_volume;
+use super::mutations::in_shader;
 use super::presence::{two_lobes, waves};
 use crate::common::context;
 use crate::compare::{compare, flat32};
@@ -54,6 +56,18 @@ fn cut() -> Settings {
     settings
 }
 
+/// The same where all light has one colour and matter is grey: the renderer follows one number in place of three.
+fn one_color() -> Settings {
+    const COLOR: [f32; 3] = [0.6, 1.0, 0.8];
+    let mut settings = everything();
+    settings.shading.emission = 0.0;
+    settings.transfer.points.iter_mut().for_each(|point| point.color = [0.8; 3]);
+    settings.lights.iter_mut().for_each(|light| light.color = COLOR);
+    (settings.sky.zenith, settings.sky.horizon, settings.sky.ground) = (COLOR, [0.0; 3], [0.0; 3]);
+    assert!(OneColor::of(&settings).is_some(), "it does not count as one colour");
+    settings
+}
+
 /// The light of a reference as the GPU lays it out.
 fn flat(bounced: &Bounced) -> Vec<f64> {
     let [r, g, b] = &bounced.light;
@@ -61,7 +75,14 @@ fn flat(bounced: &Bounced) -> Vec<f64> {
 }
 
 fn light(volume: &Volume, settings: &Settings) -> Vec<f64> {
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    damaged_light(("\u{0}", ""), volume, settings)
+}
+
+/// The same of a renderer whose shaders have another text in place of one.
+fn damaged_light((from, to): (&str, &str), volume: &Volume, settings: &Settings) -> Vec<f64> {
+    let context = context();
+    let shaders = ShaderLibrary::with_mutation(&context, from, to);
+    let mut renderer = Renderer::with_shaders(&context, shaders).expect("a renderer");
     flat32(&renderer.bounced(&Dataset::new(volume.clone()), settings).expect("light is read back"))
 }
 
@@ -70,6 +91,7 @@ fn light_that_has_bounced_is_what_the_reference_says() {
     for (what, volume, settings) in [
         ("creature", creature(), bouncing(scenes::look())),
         ("everything", creature(), everything()),
+        ("of one colour", creature(), one_color()),
         ("cut", creature(), cut()),
         ("missing voxels", waves(N, DVec3::ONE, true), bouncing(two_lobes())),
     ] {
@@ -118,6 +140,30 @@ fn mistakes_in_it_are_noticed() {
     differs("another transfer function", &|settings| {
         settings.transfer.points.iter_mut().for_each(|point| point.color[1] *= 0.9);
     });
+}
+
+#[test]
+fn mistakes_in_light_of_one_color_are_noticed() {
+    let volume = creature();
+    let mut settings = one_color();
+    settings.scattering.resolution = Resolution::Quarter;
+    let right = light(&volume, &settings);
+    let mistakes = [
+        ("bounces/outcome.wgsl", "sum.r * bounce.color", "vec3f(sum.r)"),
+        ("bounces/sweep.wgsl", "return rays.arriving.r;", "return 0.0;"),
+        ("bounces/sweep.wgsl", "return found.g;", "return found.r;"),
+        (
+            "bounces/source.wgsl",
+            "vec4f(given.r, found.a, 0.0, 0.0)",
+            "vec4f(given.r, 0.5 * found.a, 0.0, 0.0)",
+        ),
+        ("bounces/first.wgsl", "return found.g;", "return found.r;"),
+    ];
+    for (shader, from, to) in mistakes {
+        in_shader(shader, from);
+        let damaged = damaged_light((from, to), &volume, &settings);
+        assert!(compare(to, &damaged, &right, SAME_BOUNCED).is_err(), "{shader}: {to:?} is not noticed");
+    }
 }
 
 #[test]

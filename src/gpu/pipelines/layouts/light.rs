@@ -17,7 +17,7 @@ pub(super) const LAYOUTS: Layouts = &[
             Slot::loaded(5, "point_3", Shape::Volume),
             Slot::loaded(6, "before", Shape::Volume),
             Slot::target(7, "after", Shape::Volume, Format::Of(wgpu::TextureFormat::R32Float)),
-            Slot::target(8, "attenuation", Shape::Volume, Format::Attenuation),
+            Slot::target(8, "attenuation", Shape::Volume, Format::Target),
         ]],
     ),
     (
@@ -27,14 +27,14 @@ pub(super) const LAYOUTS: Layouts = &[
             Slot::list(1, "bricks", 16, Access::Read),
             Slot::sampled(2, "ring", Shape::Sheets),
             Slot::sampler(3, "ring_sampler"),
-            Slot::target(4, "attenuation", Shape::Volume, Format::Attenuation),
+            Slot::target(4, "attenuation", Shape::Volume, Format::Target),
         ]],
     ),
     (
         "light/clear_margin.wgsl",
         &[&[
             Slot::list(0, "bricks", 16, Access::Read),
-            Slot::target(1, "attenuation", Shape::Volume, Format::Attenuation),
+            Slot::target(1, "attenuation", Shape::Volume, Format::Target),
         ]],
     ),
     (
@@ -44,7 +44,7 @@ pub(super) const LAYOUTS: Layouts = &[
             Slot::loaded(1, "red", Shape::Volume),
             Slot::loaded(2, "green", Shape::Volume),
             Slot::loaded(3, "blue", Shape::Volume),
-            Slot::target(4, "attenuation", Shape::Volume, Format::Attenuation),
+            Slot::target(4, "attenuation", Shape::Volume, Format::Target),
         ]],
     ),
     (
@@ -93,7 +93,7 @@ pub(super) const LAYOUTS: Layouts = &[
                 TABLE,
                 Slot::sampled(2, "distances", Shape::Volume),
                 Slot::list(3, "bricks", 16, Access::Read),
-                Slot::target(4, "attenuation", Shape::Volume, Format::Attenuation),
+                Slot::target(4, "attenuation", Shape::Volume, Format::Target),
             ],
             VOLUME,
         ],

@@ -201,7 +201,7 @@ const OTHERS: Layouts = &[
                 Slot::list(0, "bricks", 16, Access::Read),
                 Slot::list(1, "light", 4, Access::Read),
                 Slot::list(2, "weights", 4, Access::Read),
-                Slot::target(3, "attenuation", Shape::Volume, Format::Attenuation),
+                Slot::target(3, "attenuation", Shape::Volume, Format::Target),
             ],
             &[SCATTER],
         ],
@@ -299,15 +299,11 @@ const OTHERS: Layouts = &[
 /// What a compute shader binds: its name, and for each group the name and the entry of each binding.
 pub type ShaderBindings = (&'static str, Vec<Vec<(&'static str, wgpu::BindGroupLayoutEntry)>>);
 
-/// The bindings of every compute shader, where single channels are stored in `storage`, for light volumes of
-/// `attenuation`: for whoever compares them with the shaders.
+/// The bindings of every compute shader, where single channels are stored in `storage`, for targets of
+/// `target`: for whoever compares them with the shaders.
 #[cfg(feature = "testing")]
-pub fn shader_bindings(
-    storage: wgpu::TextureFormat,
-    attenuation: wgpu::TextureFormat,
-) -> Vec<ShaderBindings> {
-    let group = |slots: &&'static [Slot]| {
-        slots.iter().map(|slot| (slot.name, slot.entry(storage, attenuation))).collect()
-    };
+pub fn shader_bindings(storage: wgpu::TextureFormat, target: wgpu::TextureFormat) -> Vec<ShaderBindings> {
+    let group =
+        |slots: &&'static [Slot]| slots.iter().map(|slot| (slot.name, slot.entry(storage, target))).collect();
     layouts().map(|(shader, groups)| (*shader, groups.iter().map(group).collect())).collect()
 }

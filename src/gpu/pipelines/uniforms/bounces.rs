@@ -22,10 +22,8 @@ pub struct Bounces {
 pub struct Bounce {
     pub dims: [u32; 3],
     pub share: f32,
+    pub color: [f32; 3],
     pub least: f32,
-    pub pad0: f32,
-    pub pad1: f32,
-    pub pad2: f32,
 }
 
 /// `bounces/first.wgsl`.
