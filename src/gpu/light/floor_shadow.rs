@@ -13,8 +13,9 @@ use crate::gpu::{Context, GpuError};
 use crate::model::{LightKind, SceneLight};
 use crate::plan::{FloorPlace, FloorTexels, LightView};
 
-/// Texels along an edge: two voxels of 256 to the scene's two units, as fine as the light volumes of such lights.
-const MAP_EDGE: u32 = 384;
+/// Texels along an edge: as fine as the light volume, within these. The most is two voxels of 256 to the scene's two units,
+/// and with the least a texel is a fortieth of a unit.
+const EDGES: std::ops::RangeInclusive<u32> = 256..=384;
 
 /// What of a light gets to the floor.
 #[derive(Debug)]
@@ -22,6 +23,8 @@ pub(crate) struct FloorShadow {
     /// Where the floor lies.
     pub place: FloorPlace,
     pub view: wgpu::TextureView,
+    /// Texels along an edge.
+    edge: u32,
     /// Of the views before, a float for each texel.
     sums: wgpu::Buffer,
 }
@@ -39,34 +42,35 @@ pub(crate) struct ViewOfPoint<'a> {
 }
 
 impl FloorShadow {
-    /// Makes the texture; nothing is filled yet.
+    /// Makes the texture, of a light volume whose blocks are so long in scene units; nothing is filled yet.
     ///
     /// # Errors
     /// When memory is out.
-    pub(crate) fn new(context: &Context, place: FloorPlace) -> Result<Self, GpuError> {
+    pub(crate) fn new(context: &Context, place: FloorPlace, block: f64) -> Result<Self, GpuError> {
+        let edge = FloorPlace::texels_of(block).clamp(*EDGES.start(), *EDGES.end());
         let usages = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
-        let size = [MAP_EDGE as usize, MAP_EDGE as usize, 1];
+        let size = [edge as usize, edge as usize, 1];
         let format = context.storage_format;
         let texture = context.texture(&texture_3d("FloorShadow::texture", size, format, usages))?;
         let sums = context.empty_buffer(&wgpu::BufferDescriptor {
             label: Some("FloorShadow::sums"),
-            size: 4 * u64::from(MAP_EDGE) * u64::from(MAP_EDGE),
+            size: 4 * u64::from(edge) * u64::from(edge),
             usage: wgpu::BufferUsages::STORAGE,
             mapped_at_creation: false,
         });
-        Ok(Self { place, view: texture.create_view(&wgpu::TextureViewDescriptor::default()), sums })
+        Ok(Self { place, view: texture.create_view(&wgpu::TextureViewDescriptor::default()), edge, sums })
     }
 
     /// Bytes of texture and sums.
     pub(crate) fn bytes(&self) -> u64 {
         let texel = u64::from(self.view.texture().format().block_copy_size(None).unwrap_or(4));
-        self.sums.size() + texel * u64::from(MAP_EDGE) * u64::from(MAP_EDGE)
+        self.sums.size() + texel * u64::from(self.edge) * u64::from(self.edge)
     }
 
     /// The part of the map that light of a view gets to through its sheets: the first texel, and how many there are. `None`
     /// where some of it goes upwards.
     fn reached(&self, view: &LightView) -> Option<[[u32; 2]; 2]> {
-        let FloorTexels { origin, along } = self.place.texels(MAP_EDGE);
+        let FloorTexels { origin, along } = self.place.texels(self.edge);
         let up = self.place.up.direction();
         let [width, height] = view.frame.size.map(f64::from);
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
@@ -84,7 +88,7 @@ impl FloorShadow {
             let texel = DVec2::from(along.map(|step| (place - origin).dot(step) / step.length_squared()));
             (low, high) = (low.min(texel), high.max(texel));
         }
-        let edge = DVec2::splat(f64::from(MAP_EDGE));
+        let edge = DVec2::splat(f64::from(self.edge));
         let first = (low.floor() - 1.0).clamp(DVec2::ZERO, edge);
         let end = (high.ceil() + 2.0).clamp(first, edge);
         Some([first, end - first].map(|v| [v.x as u32, v.y as u32]))
@@ -101,8 +105,8 @@ impl FloorShadow {
         let ViewOfPoint { point, geometry, index, count, points } = of;
         let variant = FloorShadowVariant { is_first: index == 0, is_last: index + 1 == count };
         let pipeline = gpu.shaders.pipeline(&variant)?;
-        let FloorTexels { origin, along: [right, front] } = self.place.texels(MAP_EDGE);
-        let whole = [[0; 2], [MAP_EDGE; 2]];
+        let FloorTexels { origin, along: [right, front] } = self.place.texels(self.edge);
+        let whole = [[0; 2], [self.edge; 2]];
         let is_whole = index == 0 || index + 1 == count || point.hood.on;
         let texels = if is_whole { whole } else { self.reached(geometry).unwrap_or(whole) };
         let vec3 = |v: DVec3| v.as_vec3().into();
@@ -116,7 +120,7 @@ impl FloorShadow {
         let [light_from_scene_x, light_from_scene_y, light_from_scene_z] = rows(&light_from_scene);
         let uniform = uniforms::FloorShadow {
             origin: vec3(origin),
-            size: MAP_EDGE,
+            size: self.edge,
             along_x: vec3(right),
             share: 1.0 / points as f32,
             along_y: vec3(front),

@@ -38,6 +38,11 @@ impl FloorPlace {
         [upright * DVec3::X, upright * DVec3::Y, self.up.direction()]
     }
 
+    /// As many texels along an edge of a map as are so long in scene units.
+    pub fn texels_of(length: f64) -> u32 {
+        (2.0 * REACH / length).ceil() as u32
+    }
+
     /// The texels of a map with `edge` of them along each edge.
     pub fn texels(self, edge: u32) -> FloorTexels {
         let [right, front, up] = self.axes();
@@ -60,6 +65,13 @@ impl FloorPlace {
 mod tests {
     use super::*;
     use glam::Vec4;
+
+    #[test]
+    fn texels_of_a_length_cover_a_map() {
+        for (length, edge) in [(2.0 * REACH / 300.0, 300), (2.0 * REACH / 300.5, 301)] {
+            assert_eq!(FloorPlace::texels_of(length), edge);
+        }
+    }
 
     #[test]
     fn texels_are_looked_up_in_their_middles() {
