@@ -7,7 +7,7 @@
 @group(0) @binding(2) var clamped: sampler;
 @group(0) @binding(5) var<storage, read_write> sums: array<vec4f>;
 
-// Directions of a batch.
+// Rays of a batch. Not a number of the uniform's: drivers lay out a loop whose end they know.
 override DIRECTIONS: u32 = 4u;
 
 @compute @workgroup_size(4, 4, 4)

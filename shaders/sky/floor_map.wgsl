@@ -23,9 +23,6 @@ var<private> map: FloorMap;
 // C₁ in rgb, C₀ in a.
 @group(0) @binding(4) var moments: texture_storage_3d<rgba16float, write>;
 
-// Directions of a batch.
-override DIRECTIONS: u32 = 4u;
-
 // The transmittance of one ray where it has come as far as slice n.
 fn passed_by(rays: SkyRays, ray: vec2f, n: f32, size: vec3f) -> f32 {
     let span = slices_of_ray(rays, ray + rays.first, size);
@@ -35,6 +32,11 @@ fn passed_by(rays: SkyRays, ray: vec2f, n: f32, size: vec3f) -> f32 {
     let stored = textureLoad(sheets, select(vec3i(0), place, is_ray), 0).r;
     return select(1.0, stored, is_ray);
 }
+
+// Rays of a batch. Not a number of the uniform's: drivers lay out a loop whose end they know.
+override DIRECTIONS: u32 = 4u;
+// Whether it is the last, and the mean is known.
+override IS_LAST: bool = true;
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -61,6 +63,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         );
         sum += rays.weight * mix(near, far, f.y) * vec4f(rays.towards, 1.0);
     }
-    sums[at] = sum;
-    textureStore(moments, vec3u(id.xy, 0u), sum * map.share);
+    if (IS_LAST) {
+        textureStore(moments, vec3u(id.xy, 0u), sum * map.share);
+    } else {
+        sums[at] = sum;
+    }
 }

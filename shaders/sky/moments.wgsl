@@ -8,8 +8,10 @@
 // V₁ in rgb, V₀ in a.
 @group(0) @binding(4) var moments: texture_storage_3d<rgba16float, write>;
 
-// Directions of a batch.
+// Rays of a batch. Not a number of the uniform's: drivers lay out a loop whose end they know.
 override DIRECTIONS: u32 = 4u;
+// Whether it is the last, and the mean is known.
+override IS_LAST: bool = true;
 
 @compute @workgroup_size(4, 4, 4)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -26,6 +28,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let passed = textureSampleLevel(sheets, clamped, place, 0.0).r;
         sum += rays.weight * passed * vec4f(rays.towards, 1.0);
     }
-    sums[at] = sum;
-    textureStore(moments, id, sum * sweep.share);
+    if (IS_LAST) {
+        textureStore(moments, id, sum * sweep.share);
+    } else {
+        sums[at] = sum;
+    }
 }

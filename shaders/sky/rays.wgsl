@@ -6,8 +6,8 @@ const MAX_SKY_RAYS = 8;
 struct SkyRays {
     // Unit vector towards where the light comes from, in scene space.
     towards: vec3f,
-    // 1, or 0 where a batch has fewer.
-    weight: f32,
+    // Shortest edges of a voxel from slice to slice.
+    step: f32,
     // Blocks that rays get further from slice to slice, along the axes that follow that of the slices.
     drift: vec2f,
     // Where ray (0, 0) crosses the first slice.
@@ -17,14 +17,14 @@ struct SkyRays {
     axis: u32,
     // 1 where light goes up the axis.
     rises: u32,
-    // Shortest edges of a voxel from slice to slice.
-    step: f32,
-    // Layer of its first slice.
-    layer: u32,
-    pad0: f32,
-    pad1: f32,
     // The light that comes from there, where what is marched is light and not what is left of it (bounces/sweep.wgsl).
     arriving: vec3f,
+    // Layer of its first slice.
+    layer: u32,
+    // 1, or 0 where a batch has fewer.
+    weight: f32,
+    pad0: f32,
+    pad1: f32,
     pad2: f32,
 }
 

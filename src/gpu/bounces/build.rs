@@ -2,15 +2,16 @@
 
 use glam::DVec3;
 
-use super::textures::{Textures, directions_of_a_batch};
+use super::textures::Textures;
 use super::volume::BouncesVolume;
 use crate::gpu::light::packed::pack_light;
 use crate::gpu::pipelines::binding::{Named, buffer, sampler, view_of};
 use crate::gpu::pipelines::uniforms;
 use crate::gpu::pipelines::variant::{ColorVariant, Constants, Only, Variant, flag};
 use crate::gpu::resources::pass;
+use crate::gpu::sky::batches::{BATCH_BLOCKS, Batches, sheet_size};
 use crate::gpu::sky::blocks::BlocksPass;
-use crate::gpu::sky::sweep::{BATCH_BLOCKS, GatherVariant, SweepPass};
+use crate::gpu::sky::sweep::{GatherVariant, SweepPass};
 use crate::gpu::volume::Gpu;
 use crate::gpu::volume::transfer_tables::Tables;
 use crate::gpu::{GpuError, RenderOptions};
@@ -56,9 +57,7 @@ pub(crate) struct Look<'a> {
 #[derive(Debug)]
 pub(crate) struct BouncesBuild {
     /// Rays in the directions of a bounce, and in those of the last.
-    frames: [Vec<SweepFrame>; 2],
-    /// Directions of a batch.
-    each: usize,
+    batches: [Batches; 2],
     /// Blocks along x, y and z.
     dims: [usize; 3],
     /// Rays from a block to all lights.
@@ -90,16 +89,15 @@ impl BouncesBuild {
                 .map(|towards| SweepFrame::new(scene, volume.divisor, towards))
                 .collect::<Vec<_>>()
         });
-        let sheet = [0, 1]
-            .map(|side| frames.iter().flatten().map(|frame| frame.size[side] as usize).max().unwrap_or(1));
-        let each = directions_of_a_batch(volume.dims, sheet);
         let one_color = key.one_color();
-        let slices = volume.dims.into_iter().max().unwrap_or(1) * each;
-        let textures = Textures::new(gpu.context, volume, [sheet[0], sheet[1], slices], one_color.is_some())?;
+        let format = Textures::sheet_format(gpu.context, one_color.is_some());
+        let [each, last] = frames.each_ref().map(Vec::len);
+        let followed = key.bounces().saturating_sub(1) as usize * each + last;
+        let size = sheet_size(frames.iter().flatten(), format, followed);
+        let textures = Textures::new(gpu.context, volume, size, one_color.is_some())?;
         let rays = (lights * key.points() as usize).max(1);
         Ok(Self {
-            frames,
-            each,
+            batches: frames.map(|frames| Batches::new(frames, size[2])),
             dims: volume.dims,
             rays,
             bounces: key.bounces(),
@@ -113,7 +111,7 @@ impl BouncesBuild {
     /// Its pieces, in order.
     pub(crate) fn steps(&self) -> Vec<BounceStep> {
         let batches = |followed: Followed| {
-            let count = self.frames(followed).len().div_ceil(self.each);
+            let count = self.batches(followed).count();
             (0..count).map(move |batch| BounceStep::Batch(followed, batch))
         };
         let mut steps = vec![BounceStep::Blocks];
@@ -138,8 +136,8 @@ impl BouncesBuild {
     }
 
     /// Rays along which light is followed.
-    fn frames(&self, followed: Followed) -> &[SweepFrame] {
-        let [bounce, last] = &self.frames;
+    fn batches(&self, followed: Followed) -> &Batches {
+        let [bounce, last] = &self.batches;
         if followed == Followed::Last { last } else { bounce }
     }
 
@@ -195,7 +193,7 @@ impl BouncesBuild {
     fn shared(&self, gpu: Gpu<'_>, volume: &BouncesVolume, followed: Followed) -> wgpu::Buffer {
         let uniform = uniforms::Bounce {
             dims: volume.dims.map(|n| n as u32),
-            share: 1.0 / self.frames(followed).len() as f32,
+            share: 1.0 / self.batches(followed).directions() as f32,
             color: self.one_color.map_or([1.0; 3], |one| one.color.as_vec3().into()),
             least: if followed == Followed::Last { -1.0 } else { f32::MIN_POSITIVE },
         };
@@ -247,7 +245,8 @@ impl BouncesBuild {
                 |c: usize| radiance.map_or(0.0, |sky| (sky.mean[c] + sky.slope[c].dot(towards)).max(0.0));
             self.followed_of(DVec3::from([0, 1, 2].map(of)))
         };
-        let frames = self.frames(followed).chunks(self.each).nth(batch).unwrap_or_default();
+        let batches = self.batches(followed);
+        let frames = batches.frames(batch);
         let pass = SweepPass {
             shader: "bounces/sweep.wgsl",
             one_color: self.one_color.is_some(),
@@ -259,8 +258,7 @@ impl BouncesBuild {
         };
         let uniform = pass.record(gpu, view_of("medium", medium), arriving, encoder)?;
 
-        let gather =
-            gpu.shaders.pipeline(&GatherVariant { shader: "bounces/gather.wgsl", directions: self.each })?;
+        let gather = gpu.shaders.pipeline(&GatherVariant::of("bounces/gather.wgsl", batches))?;
         let shared = self.shared(gpu, volume, followed);
         let entries = [
             buffer("bound_sweep", &uniform),

@@ -2,15 +2,10 @@
 
 use super::volume::BouncesVolume;
 use crate::gpu::context::pair_format;
-use crate::gpu::pipelines::uniforms;
 use crate::gpu::sky::sheets::RaySheets;
-use crate::gpu::sky::sweep::{BATCH_BLOCKS, MOST_LAYERS};
 use crate::gpu::sky::volume::SUM_BYTES;
 use crate::gpu::volume::texture_3d;
 use crate::gpu::{Context, GpuError};
-
-/// Most texels of the rays of a batch: 128 MiB.
-const BATCH_TEXELS: usize = 1 << 24;
 
 /// What only the filling needs.
 #[derive(Debug)]
@@ -36,28 +31,32 @@ pub(super) struct Textures {
     pub bytes: u64,
 }
 
+/// The format of three colours, and what else there is.
+const COLORS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+
 impl Textures {
-    /// Room for the filling of a volume, where the rays of a batch of directions have so many columns, rows and slices; of
-    /// light that has one colour all through, or of three colours.
+    /// The format of sheets of light that has one colour all through, or of three colours.
+    pub(super) fn sheet_format(context: &Context, one_color: bool) -> wgpu::TextureFormat {
+        if one_color { context.storage_format } else { COLORS }
+    }
+
+    /// Room for the filling of a volume, with sheets of so many columns, rows and layers; of light that has one colour all through, or of three colours.
     ///
     /// # Errors
     /// When memory is out.
     pub(super) fn new(
         context: &Context,
         volume: &BouncesVolume,
-        [width, height, slices]: [usize; 3],
+        sheet_size: [usize; 3],
         one_color: bool,
     ) -> Result<Self, GpuError> {
         let dims = volume.dims;
         let usages = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
-        let (medium_format, sheet_format) = if one_color {
-            (pair_format(context.storage_format), context.storage_format)
-        } else {
-            (wgpu::TextureFormat::Rgba16Float, wgpu::TextureFormat::Rgba16Float)
-        };
+        let medium_format = if one_color { pair_format(context.storage_format) } else { COLORS };
+        let sheet_format = Self::sheet_format(context, one_color);
         let medium_size = dims.map(|n| n + 2);
         let medium = context.texture(&texture_3d("Bounces::medium", medium_size, medium_format, usages))?;
-        let sheets = RaySheets::new(context, [width, height, slices], sheet_format)?;
+        let sheets = RaySheets::new(context, sheet_size, sheet_format)?;
         let texels = |size: [usize; 3]| size.iter().map(|&n| n as u64).product::<u64>();
         let list = |label, count: u64| {
             context.empty_buffer(&wgpu::BufferDescriptor {
@@ -82,14 +81,4 @@ impl Textures {
             sheets,
         })
     }
-}
-
-/// As many directions in a batch as it has room for.
-pub(super) fn directions_of_a_batch(dims: [usize; 3], [width, height]: [usize; 2]) -> usize {
-    let blocks: usize = dims.iter().product();
-    let slices = dims.into_iter().max().unwrap_or(1);
-    (BATCH_BLOCKS / blocks.max(1))
-        .min(MOST_LAYERS / slices)
-        .min(BATCH_TEXELS / (width * height * slices))
-        .clamp(1, uniforms::MAX_SKY_RAYS)
 }

@@ -1,16 +1,15 @@
 //! The march of a sky's light, direction by direction.
 
-use std::ops::Range;
-
 use glam::DVec3;
 
+use super::batches::{Batches, sheet_size};
 use super::blocks::BlocksPass;
 use super::floor_map::MAP_EDGE;
 use super::sheets::RaySheets;
 use super::volume::{SUM_BYTES, SkyVolume};
 use crate::gpu::pipelines::binding::{Named, buffer, sampler, view_of};
 use crate::gpu::pipelines::uniforms;
-use crate::gpu::pipelines::variant::{ColorVariant, Constants, Variant};
+use crate::gpu::pipelines::variant::{ColorVariant, Constants, Variant, flag};
 use crate::gpu::resources::pass;
 use crate::gpu::volume::transfer_tables::Tables;
 use crate::gpu::volume::{Gpu, texture_3d};
@@ -18,21 +17,13 @@ use crate::gpu::{Context, GpuError, RenderOptions};
 use crate::model::Settings;
 use crate::plan::{SkyKey, SweepFrame, directions_above, sweep_directions};
 
-/// Blocks times directions of a batch: some 0.2 s on a software adapter.
-pub(crate) const BATCH_BLOCKS: usize = 1 << 23;
-
-/// Most layers of a 3D texture everywhere.
-pub(crate) const MOST_LAYERS: usize = 2048;
-
 /// The filling of a volume of the sky's visibility.
 #[derive(Debug)]
 pub(crate) struct SkyBuild {
-    /// Rays from every direction, in the order in which they are followed.
-    frames: Vec<SweepFrame>,
+    /// Rays from every direction.
+    around: Batches,
     /// Rays from above, for a floor: those from all around would draw petals under what is small.
-    above: Vec<SweepFrame>,
-    /// Directions of a batch.
-    each: usize,
+    above: Batches,
     /// What multiplies the extinction.
     density_scale: f64,
     textures: Textures,
@@ -64,28 +55,19 @@ impl SkyBuild {
                 directions.into_iter().map(|towards| SweepFrame::new(scene, volume.divisor, towards));
             frames.collect::<Vec<_>>()
         };
-        let frames = frames_of(sweep_directions(key.directions()));
+        let around = frames_of(sweep_directions(key.directions()));
         let up = volume.floor.as_ref().map(|floor| floor.place.up.direction());
         let above = up.map_or_else(Vec::new, |up| frames_of(directions_above(up, key.directions())));
-        let blocks: usize = volume.dims.iter().product();
-        let slices = volume.dims.into_iter().max().unwrap_or(1);
-        let each = (BATCH_BLOCKS / blocks.max(1)).min(MOST_LAYERS / slices).clamp(1, uniforms::MAX_SKY_RAYS);
-        let sheet = [0, 1].map(|side| {
-            let all = frames.iter().chain(&above);
-            all.map(|frame| frame.size[side] as usize).max().unwrap_or(1)
-        });
-        let textures = Textures::new(gpu.context, volume, sheet, each)?;
-        Ok(Self { frames, above, each, density_scale: key.density_scale(), textures })
+        let all = around.iter().chain(&above);
+        let size = sheet_size(all, gpu.context.storage_format, around.len() + above.len());
+        let textures = Textures::new(gpu.context, volume, size)?;
+        let [around, above] = [around, above].map(|frames| Batches::new(frames, size[2]));
+        Ok(Self { around, above, density_scale: key.density_scale(), textures })
     }
 
     /// Batches of directions.
     pub(crate) fn batches(&self) -> usize {
-        self.batches_around() + self.above.len().div_ceil(self.each)
-    }
-
-    /// Those from all around, which come first.
-    fn batches_around(&self) -> usize {
-        self.frames.len().div_ceil(self.each)
+        self.around.count() + self.above.count()
     }
 
     /// Bytes that only the filling needs.
@@ -127,26 +109,30 @@ impl SkyBuild {
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let Textures { blocks, sheets, sums, .. } = &self.textures;
-        let around = self.batches_around();
-        let (all, batch, is_above) =
-            if batch < around { (&self.frames, batch, false) } else { (&self.above, batch - around, true) };
-        let taken: Range<usize> = batch * self.each..((batch + 1) * self.each).min(all.len());
-        let frames = &all[taken.clone()];
+        // Those from all around come first.
+        let (batches, batch, is_above) = match batch.checked_sub(self.around.count()) {
+            None => (&self.around, batch, false),
+            Some(batch) => (&self.above, batch, true),
+        };
+        let taken = batches.directions_to(batch);
+        let is_last = batch + 1 == batches.count();
         let pass = SweepPass {
             shader: "sky/sweep.wgsl",
             one_color: false,
-            frames,
+            frames: batches.frames(batch),
             dims: volume.dims,
             sheets,
             is_first: batch == 0,
-            share: 1.0 / taken.end as f32,
+            share: 1.0 / taken as f32,
         };
         let uniform = pass.record(gpu, view_of("extinction", blocks), |_| DVec3::ZERO, encoder)?;
         if is_above {
-            return self.fill_floor(gpu, volume, &uniform, taken.end, encoder);
+            return self.fill_floor(gpu, volume, &uniform, (taken, is_last), encoder);
         }
-        let gather =
-            gpu.shaders.pipeline(&GatherVariant { shader: "sky/moments.wgsl", directions: self.each })?;
+        let gather = gpu.shaders.pipeline(&GatherVariant {
+            is_last: Some(is_last),
+            ..GatherVariant::of("sky/moments.wgsl", batches)
+        })?;
         let entries = [
             buffer("bound_sweep", &uniform),
             view_of("sheets", &sheets.view),
@@ -166,14 +152,16 @@ impl SkyBuild {
         gpu: Gpu<'_>,
         volume: &SkyVolume,
         sweep: &wgpu::Buffer,
-        taken: usize,
+        (taken, is_last): (usize, bool),
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let (Some(floor), Some(sums)) = (&volume.floor, &self.textures.floor_sums) else { return Ok(()) };
         let uniform = floor.uniform(&gpu.volume.scene, volume.divisor, 1.0 / taken as f64);
         let uniform = gpu.uniform("Sky::floor_map", uniform);
-        let variant = GatherVariant { shader: "sky/floor_map.wgsl", directions: self.each };
-        let pipeline = gpu.shaders.pipeline(&variant)?;
+        let pipeline = gpu.shaders.pipeline(&GatherVariant {
+            is_last: Some(is_last),
+            ..GatherVariant::of("sky/floor_map.wgsl", &self.above)
+        })?;
         let entries = [
             buffer("bound_sweep", sweep),
             buffer("bound_map", &uniform),
@@ -188,19 +176,13 @@ impl SkyBuild {
 }
 
 impl Textures {
-    fn new(
-        context: &Context,
-        volume: &SkyVolume,
-        [width, height]: [usize; 2],
-        each: usize,
-    ) -> Result<Self, GpuError> {
+    fn new(context: &Context, volume: &SkyVolume, sheet_size: [usize; 3]) -> Result<Self, GpuError> {
         let dims = volume.dims;
         let usages = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
         let format = context.storage_format;
-        let slices = dims.into_iter().max().unwrap_or(1);
         let block_size = dims.map(|n| n + 2);
         let blocks = context.texture(&texture_3d("Sky::blocks", block_size, format, usages))?;
-        let sheets = RaySheets::new(context, [width, height, slices * each], format)?;
+        let sheets = RaySheets::new(context, sheet_size, format)?;
         let texels = |size: [usize; 3]| size.iter().map(|&n| n as u64).product::<u64>();
         let sums = |label, count: u64| {
             context.empty_buffer(&wgpu::BufferDescriptor {
@@ -254,11 +236,12 @@ impl SweepPass<'_> {
     ) -> Result<wgpu::Buffer, GpuError> {
         let Self { shader, one_color, frames, dims, sheets, is_first, share } = *self;
         let edge = gpu.volume.scene.smallest_edge();
-        let slices = dims.into_iter().max().unwrap_or(1);
         // What is left over has no weight, and no rays.
         let mut rays = [bytemuck::Zeroable::zeroed(); uniforms::MAX_SKY_RAYS];
-        for (at, (slot, frame)) in rays.iter_mut().zip(frames).enumerate() {
-            *slot = pack(frame, edge, at * slices, arriving(frame.towards));
+        let mut layer = 0;
+        for (slot, frame) in rays.iter_mut().zip(frames) {
+            *slot = pack(frame, edge, layer, arriving(frame.towards));
+            layer += frame.slices();
         }
         let reciprocal = |size: [usize; 3]| size.map(|n| 1.0 / n as f32);
         let uniform = uniforms::Sweep {
@@ -290,17 +273,17 @@ impl SweepPass<'_> {
 fn pack(frame: &SweepFrame, edge: f64, layer: usize, arriving: DVec3) -> uniforms::SkyRays {
     uniforms::SkyRays {
         towards: frame.towards.as_vec3().into(),
-        weight: 1.0,
+        step: (frame.step / edge) as f32,
         drift: frame.drift.as_vec2().into(),
         first: frame.first.map(|at| at as f32),
         size: frame.size,
         axis: frame.axis as u32,
         rises: u32::from(frame.rises),
-        step: (frame.step / edge) as f32,
+        arriving: arriving.as_vec3().into(),
         layer: layer as u32,
+        weight: 1.0,
         pad0: 0.0,
         pad1: 0.0,
-        arriving: arriving.as_vec3().into(),
         pad2: 0.0,
     }
 }
@@ -310,7 +293,16 @@ fn pack(frame: &SweepFrame, edge: f64, layer: usize, arriving: DVec3) -> uniform
 pub(crate) struct GatherVariant {
     pub shader: &'static str,
     /// Directions of a batch.
-    pub directions: usize,
+    directions: usize,
+    /// Whether none comes after it, of a shader that stores the mean then.
+    is_last: Option<bool>,
+}
+
+impl GatherVariant {
+    /// That of a shader which stores no mean.
+    pub(crate) fn of(shader: &'static str, batches: &Batches) -> Self {
+        Self { shader, directions: batches.each(), is_last: None }
+    }
 }
 
 impl Variant for GatherVariant {
@@ -319,6 +311,8 @@ impl Variant for GatherVariant {
     }
 
     fn constants(&self) -> Constants {
-        vec![("DIRECTIONS", self.directions as f64)]
+        let mut constants = vec![("DIRECTIONS", self.directions as f64)];
+        constants.extend(self.is_last.map(|is_last| flag("IS_LAST", is_last)));
+        constants
     }
 }

@@ -36,17 +36,17 @@ pub struct Blocks {
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct SkyRays {
     pub towards: [f32; 3],
-    pub weight: f32,
+    pub step: f32,
     pub drift: [f32; 2],
     pub first: [f32; 2],
     pub size: [u32; 2],
     pub axis: u32,
     pub rises: u32,
-    pub step: f32,
+    pub arriving: [f32; 3],
     pub layer: u32,
+    pub weight: f32,
     pub pad0: f32,
     pub pad1: f32,
-    pub arriving: [f32; 3],
     pub pad2: f32,
 }
 
