@@ -33,13 +33,14 @@ impl Schedule {
     /// Finds for every brick to be filled the chunks in which any of its voxels gets its last sheet, and the
     /// tiles in which sheets are read: all of them if `reach` is [`EVERYWHERE`].
     ///
-    /// `reach`: cells beyond those to be filled that the reverse kernel reads.
+    /// `reach`: cells beyond those to be filled that the reverse kernel reads. For a floor what comes out of all sheets is read,
+    /// too; on its way it changes where bricks are filled, since all that attenuates light is in one.
     pub(crate) fn new(
         scene: &SceneSpace,
         view: &LightView,
         light: &LightVolume,
         chunk: u32,
-        reach: i32,
+        (reach, has_floor): (i32, bool),
     ) -> Self {
         let count = view.frame.slab_count.div_ceil(chunk).max(1);
         let mut chunks = vec![Vec::new(); count as usize];
@@ -52,7 +53,7 @@ impl Schedule {
         let tiles = if reach == EVERYWHERE {
             MarchTiles::all(view, chunk)
         } else {
-            MarchTiles::behind(view, scene, chunk, read_boxes(light, reach))
+            MarchTiles::behind(view, scene, chunk, read_boxes(light, reach), has_floor)
         };
         Self { chunks, tiles }
     }

@@ -17,6 +17,9 @@ use crate::plan::{FloorPlace, FloorTexels, LightView};
 /// and with the least a texel is a fortieth of a unit.
 const EDGES: std::ops::RangeInclusive<u32> = 256..=384;
 
+/// A light that so few points stand for, as while it is dragged, has the least: its map must not hold up the hand.
+const FEW_POINTS: u32 = 16;
+
 /// What of a light gets to the floor.
 #[derive(Debug)]
 pub(crate) struct FloorShadow {
@@ -42,12 +45,19 @@ pub(crate) struct ViewOfPoint<'a> {
 }
 
 impl FloorShadow {
-    /// Makes the texture, of a light volume whose blocks are so long in scene units; nothing is filled yet.
+    /// Makes the texture, of a light volume whose blocks are so long in scene units, for so many points; nothing is filled
+    /// yet.
     ///
     /// # Errors
     /// When memory is out.
-    pub(crate) fn new(context: &Context, place: FloorPlace, block: f64) -> Result<Self, GpuError> {
-        let edge = FloorPlace::texels_of(block).clamp(*EDGES.start(), *EDGES.end());
+    pub(crate) fn new(
+        context: &Context,
+        place: FloorPlace,
+        block: f64,
+        points: u32,
+    ) -> Result<Self, GpuError> {
+        let fine = FloorPlace::texels_of(block).clamp(*EDGES.start(), *EDGES.end());
+        let edge = if points <= FEW_POINTS { *EDGES.start() } else { fine };
         let usages = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
         let size = [edge as usize, edge as usize, 1];
         let format = context.storage_format;

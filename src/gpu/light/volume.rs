@@ -73,7 +73,7 @@ impl LightVolume {
         let Filling { filled, margin, reach, aheads, floor } = filling;
         let divisor = key.resolution().divisor();
         let block = volume.scene.smallest_edge() * divisor as f64;
-        let floor = floor.map(|place| FloorShadow::new(context, place, block)).transpose()?;
+        let floor = floor.map(|place| FloorShadow::new(context, place, block, key.samples())).transpose()?;
         let dims = volume.volume.dims().map(|n| n.div_ceil(divisor));
         let format = match (key.precision(), key.has_colors()) {
             // An adapter that cannot store bytes keeps what it can.

@@ -43,14 +43,19 @@ impl MarchTiles {
         marked.listed()
     }
 
-    /// The tiles that boxes of index space lie behind, from their first corners to their second.
+    /// The tiles that boxes of index space lie behind, from their first corners to their second; where something is read
+    /// behind all sheets, every tile of the first chunk, too, since light has to begin there.
     pub fn behind(
         view: &LightView,
         scene: &SceneSpace,
         chunk: u32,
         boxes: impl Iterator<Item = [DVec3; 2]>,
+        begins_everywhere: bool,
     ) -> Self {
         let mut marked = Marked::new(view, chunk);
+        if begins_everywhere {
+            marked.mark([DVec2::NEG_INFINITY, DVec2::INFINITY], [0.0; 2]);
+        }
         let turned = DAffine3::from_mat3(view.axes.transpose());
         let local_from_index = turned * DAffine3::from_translation(-view.anchor) * scene.scene_from_index;
         for [low, high] in boxes {
@@ -187,7 +192,7 @@ mod tests {
         ] {
             let mut met = 0;
             for view in views(kind, position) {
-                let tiles = MarchTiles::behind(&view, &scene, CHUNK, std::iter::once([low, high]));
+                let tiles = MarchTiles::behind(&view, &scene, CHUNK, std::iter::once([low, high]), false);
                 let [width, height] = view.frame.size;
                 for (i, j) in (0..height).flat_map(|j| (0..width).map(move |i| (i, j))) {
                     for k in 0..view.frame.slab_count {
@@ -210,9 +215,9 @@ mod tests {
         let view = &views(LightKind::Perspective, [1.0, 2.0, 3.0])[0];
         let around = |low: DVec3| std::iter::once([low, low + 1.0]);
         let count = |tiles: &MarchTiles| tiles.chunks.iter().map(Vec::len).sum::<usize>();
-        let few = count(&MarchTiles::behind(view, &scene, CHUNK, around(DVec3::splat(10.0))));
+        let few = count(&MarchTiles::behind(view, &scene, CHUNK, around(DVec3::splat(10.0)), false));
         assert!((1..=8).contains(&few), "{few}");
-        assert_eq!(count(&MarchTiles::behind(view, &scene, CHUNK, around(DVec3::splat(500.0)))), 0);
+        assert_eq!(count(&MarchTiles::behind(view, &scene, CHUNK, around(DVec3::splat(500.0)), false)), 0);
         let all = MarchTiles::all(view, CHUNK);
         let each = view.frame.size.map(|n| n.div_ceil(TILE_EDGE) as usize).iter().product::<usize>();
         assert_eq!(count(&all), each * view.frame.slab_count.div_ceil(CHUNK) as usize);
@@ -224,12 +229,24 @@ mod tests {
         let view = &views(LightKind::Parallel, [1.0, 0.3, 0.2])[0];
         let boxes =
             [[DVec3::splat(2.0), DVec3::splat(6.0)], [DVec3::splat(9.0), DVec3::new(30.0, 12.0, 15.0)]];
-        let tiles = MarchTiles::behind(view, &scene, CHUNK, boxes.into_iter());
+        let tiles = MarchTiles::behind(view, &scene, CHUNK, boxes.into_iter(), false);
         let mut seen = std::collections::BTreeSet::new();
         for tile in tiles.chunks.iter().flatten() {
             assert_eq!(tile & FIRST != 0, seen.insert(tile & !FIRST), "{tile:x}");
         }
         assert!(seen.len() > 4);
+    }
+
+    #[test]
+    fn light_begins_everywhere_where_all_that_comes_out_is_read() {
+        let scene = scene();
+        let view = &views(LightKind::Parallel, [1.0, 0.3, 0.2])[0];
+        let far = std::iter::once([DVec3::splat(12.0), DVec3::splat(18.0)]);
+        let tiles = MarchTiles::behind(view, &scene, CHUNK, far, true);
+        let all = MarchTiles::all(view, CHUNK);
+        assert_eq!(tiles.of_chunk(0), all.of_chunk(0));
+        let rest = |tiles: &MarchTiles| tiles.chunks.iter().skip(1).map(Vec::len).sum::<usize>();
+        assert!((1..rest(&all) / 2).contains(&rest(&tiles)), "{}", rest(&tiles));
     }
 
     #[test]
@@ -240,7 +257,7 @@ mod tests {
         let far = [light + DVec3::new(6.0, -1.0, -1.0), light + DVec3::new(8.0, 1.0, 1.0)];
         let is_listed = |forward: DVec3| {
             let view = views.iter().find(|view| view.axes.z_axis.dot(forward) > 0.99).unwrap();
-            let tiles = MarchTiles::behind(view, &scene, CHUNK, std::iter::once(far));
+            let tiles = MarchTiles::behind(view, &scene, CHUNK, std::iter::once(far), false);
             tiles.chunks.iter().any(|tiles| !tiles.is_empty())
         };
         assert!(is_listed(DVec3::X) && !is_listed(DVec3::NEG_X));

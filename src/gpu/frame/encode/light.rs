@@ -51,14 +51,14 @@ impl Job<'_> {
             _ => None,
         };
         let scene = &gpu.volume.scene;
-        // Scattered sheets are not marched in tiles; and a floor takes what has passed, whether that was read or not.
-        let has_floor = loaded.lights[build.slot].value.floor.is_some();
-        let beyond = if build.scatters || has_floor || sheets.reach == EVERYWHERE {
+        // Scattered sheets are not marched in tiles.
+        let beyond = if build.scatters || sheets.reach == EVERYWHERE {
             EVERYWHERE
         } else {
             i32::from(build.reverse_reach)
         };
-        let schedule = Schedule::new(scene, geometry, light, sheets.chunk, beyond);
+        let has_floor = loaded.lights[build.slot].value.floor.is_some();
+        let schedule = Schedule::new(scene, geometry, light, sheets.chunk, (beyond, has_floor));
         self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(bytes);
         Ok(CurrentView { sheets, schedule, scatter })
     }
