@@ -13,7 +13,12 @@ fn main() -> ExitCode {
     env_logger::Builder::from_env(quiet)
         .format(|out, record| {
             let text = without_controls(&record.args().to_string());
-            writeln!(out, "{}: {text} ({})", record.level().as_str().to_lowercase(), record.target())
+            let level = record.level().as_str().to_lowercase();
+            // Whoever reads what this program says need not know where in it that was written.
+            match record.target().split("::").next() {
+                Some(env!("CARGO_PKG_NAME")) | None => writeln!(out, "{level}: {text}"),
+                Some(other) => writeln!(out, "{level}: {text} ({other})"),
+            }
         })
         .init();
     ExitCode::from(cli::main(open_window))
