@@ -31,7 +31,7 @@ struct SkyRays {
 struct Sweep {
     // Blocks.
     dims: vec3u,
-    // The mean over all directions up to this batch, from their sum.
+    // The mean over all directions, from their sum.
     share: f32,
     // Of the textures of blocks, with those around the grid, and of sheets: one over their sizes.
     block_scale: vec3f,

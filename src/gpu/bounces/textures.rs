@@ -31,7 +31,7 @@ pub(super) struct Textures {
     pub bytes: u64,
 }
 
-/// The format of three colours, and what else there is.
+/// The format of three colours, with or without an extinction.
 const COLORS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 impl Textures {
@@ -40,7 +40,8 @@ impl Textures {
         if one_color { context.storage_format } else { COLORS }
     }
 
-    /// Room for the filling of a volume, with sheets of so many columns, rows and layers; of light that has one colour all through, or of three colours.
+    /// Room for the filling of a volume, with sheets of so many columns, rows and layers; of light that has one colour all
+    /// through, or of three colours.
     ///
     /// # Errors
     /// When memory is out.

@@ -94,23 +94,16 @@ impl ShaderLibrary {
             wgpu::TextureFormat::R8Unorm => "r8unorm",
             wgpu::TextureFormat::Rgba8Unorm => "rgba8unorm",
             wgpu::TextureFormat::Rgba16Float => "rgba16float",
+            wgpu::TextureFormat::Rgba32Float => "rgba32float",
             wgpu::TextureFormat::Rg16Float => "rg16float",
             wgpu::TextureFormat::Rg32Float => "rg32float",
             _ => "r16float",
         };
-        let ring = match ring_format(format) {
-            wgpu::TextureFormat::Rgba32Float => "rgba32float",
-            _ => "rgba16float",
-        };
-        let pair = match pair_format(format) {
-            wgpu::TextureFormat::Rg32Float => "rg32float",
-            _ => "rg16float",
-        };
         Ok(joined
             .replace("STORAGE_FORMAT", wgsl(format))
-            .replace("PAIR_FORMAT", pair)
+            .replace("PAIR_FORMAT", wgsl(pair_format(format)))
             .replace("TARGET_FORMAT", wgsl(target))
-            .replace("RING_FORMAT", ring))
+            .replace("RING_FORMAT", wgsl(ring_format(format))))
     }
 
     /// The pipeline of a variant, made on first use.

@@ -79,11 +79,6 @@ impl Batches {
     pub(crate) fn frames(&self, batch: usize) -> &[SweepFrame] {
         self.frames.chunks(self.each).nth(batch).unwrap_or_default()
     }
-
-    /// Directions up to the end of a batch.
-    pub(crate) fn directions_to(&self, batch: usize) -> usize {
-        ((batch + 1) * self.each).min(self.frames.len())
-    }
 }
 
 #[cfg(test)]
@@ -114,7 +109,6 @@ mod tests {
                 for batch in 0..batches.count() {
                     let frames = batches.frames(batch);
                     before += frames.len();
-                    assert_eq!(batches.directions_to(batch), before, "{dims:?}");
                     assert!((1..=batches.each()).contains(&frames.len()), "{dims:?}");
                     assert!(frames.iter().map(SweepFrame::slices).sum::<usize>() <= layers, "{dims:?}");
                     let [widest, highest] =

@@ -114,7 +114,6 @@ impl SkyBuild {
             None => (&self.around, batch, false),
             Some(batch) => (&self.above, batch, true),
         };
-        let taken = batches.directions_to(batch);
         let is_last = batch + 1 == batches.count();
         let pass = SweepPass {
             shader: "sky/sweep.wgsl",
@@ -123,11 +122,11 @@ impl SkyBuild {
             dims: volume.dims,
             sheets,
             is_first: batch == 0,
-            share: 1.0 / taken as f32,
+            share: 1.0 / batches.directions() as f32,
         };
         let uniform = pass.record(gpu, view_of("extinction", blocks), |_| DVec3::ZERO, encoder)?;
         if is_above {
-            return self.fill_floor(gpu, volume, &uniform, (taken, is_last), encoder);
+            return self.fill_floor(gpu, volume, &uniform, is_last, encoder);
         }
         let gather = gpu.shaders.pipeline(&GatherVariant {
             is_last: Some(is_last),
@@ -146,17 +145,17 @@ impl SkyBuild {
         Ok(())
     }
 
-    /// Adds what the floor sees of a batch of directions, the last before `taken`, to what came before.
+    /// Adds what the floor sees of a batch of directions to what came before.
     fn fill_floor(
         &self,
         gpu: Gpu<'_>,
         volume: &SkyVolume,
         sweep: &wgpu::Buffer,
-        (taken, is_last): (usize, bool),
+        is_last: bool,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let (Some(floor), Some(sums)) = (&volume.floor, &self.textures.floor_sums) else { return Ok(()) };
-        let uniform = floor.uniform(&gpu.volume.scene, volume.divisor, 1.0 / taken as f64);
+        let uniform = floor.uniform(&gpu.volume.scene, volume.divisor, 1.0 / self.above.directions() as f64);
         let uniform = gpu.uniform("Sky::floor_map", uniform);
         let pipeline = gpu.shaders.pipeline(&GatherVariant {
             is_last: Some(is_last),
@@ -220,7 +219,7 @@ pub(crate) struct SweepPass<'a> {
     pub sheets: &'a RaySheets,
     /// Whether nothing has been summed before.
     pub is_first: bool,
-    /// What of the sum up to this batch is shown.
+    /// One over all directions: what makes their sum a mean.
     pub share: f32,
 }
 
