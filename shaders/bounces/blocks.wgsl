@@ -1,6 +1,7 @@
-// What light meets that is scattered, block by block of voxels: the mean extinction of eight places in each, as optical
+// What light meets that is scattered, in listed blocks of voxels: the mean extinction of eight places in each, as optical
 // depth per shortest edge of a voxel, and what of it scatters light, for each colour: extinction × albedo × colour.
 #import "sky/places.wgsl"
+#import "common/listed_cells.wgsl"
 
 // The look of the eye, whose colours are those of what light bounces off.
 @group(0) @binding(4) var<storage, read> look_table: TransferTable;
@@ -26,32 +27,32 @@ fn color_at(p: vec3f) -> vec3f {
 #endif
 }
 
-@compute @workgroup_size(4, 4, 4)
-fn main(@builtin(global_invocation_id) id: vec3u) {
+@compute @workgroup_size(64)
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     blocks = bound_blocks;
     grid = bound_grid;
-    if (any(id >= blocks.dims + 2u)) {
+    let listed = listed_cell(group, lane);
+    if (listed >= arrayLength(&cells)) {
+        return;
+    }
+    let id = voxel_of(cells[listed], lane);
+    if (any(id >= blocks.dims)) {
         return;
     }
     var sum = vec4f(0.0);
-    if (may_attenuate(id)) {
-        for (var corner = 0u; corner < 8u; corner += 1u) {
-            let p = place_in(id, corner);
-            let extinction = extinction_at(p);
-            if (extinction > 0.0) {
-                sum += extinction * vec4f(color_at(p) * blocks.albedo, 1.0);
-            }
+    for (var corner = 0u; corner < 8u; corner += 1u) {
+        let p = place_in(id, corner);
+        let extinction = extinction_at(p);
+        if (extinction > 0.0) {
+            sum += extinction * vec4f(color_at(p) * blocks.albedo, 1.0);
         }
     }
     sum *= blocks.edge / 8.0;
     sum *= min(MOST_EXTINCTION / max(sum.a, 1e-9), 1.0);
 #if ONE_COLOR
-    textureStore(medium, id, vec4f(0.0, sum.a, 0.0, 0.0));
+    textureStore(medium, id + 1u, vec4f(0.0, sum.a, 0.0, 0.0));
 #else
-    textureStore(medium, id, vec4f(0.0, 0.0, 0.0, sum.a));
+    textureStore(medium, id + 1u, vec4f(0.0, 0.0, 0.0, sum.a));
 #endif
-    if (all(id >= vec3u(1u)) && all(id <= blocks.dims)) {
-        let at = id - 1u;
-        scattering[(at.z * blocks.dims.y + at.y) * blocks.dims.x + at.x] = sum;
-    }
+    scattering[(id.z * blocks.dims.y + id.y) * blocks.dims.x + id.x] = sum;
 }

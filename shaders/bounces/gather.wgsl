@@ -1,19 +1,26 @@
-// The light that blocks receive from all around: its sum over the directions of a batch, gathered from the rays around
+// The light that listed blocks receive from all around: its sum over the directions of a batch, gathered from the rays around
 // their middles and added to those of the batches before.
 #import "sky/rays.wgsl"
 #import "bounces/bounce.wgsl"
+#import "common/listed_cells.wgsl"
 
 @group(0) @binding(1) var sheets: texture_3d<f32>;
 @group(0) @binding(2) var clamped: sampler;
 @group(0) @binding(5) var<storage, read_write> sums: array<vec4f>;
+@group(0) @binding(6) var<storage, read> cells: array<u32>;
 
 // Rays of a batch. Not a number of the uniform's: drivers lay out a loop whose end they know.
 override DIRECTIONS: u32 = 4u;
 
-@compute @workgroup_size(4, 4, 4)
-fn main(@builtin(global_invocation_id) id: vec3u) {
+@compute @workgroup_size(64)
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     sweep = bound_sweep;
     bounce = bound_bounce;
+    let listed = listed_cell(group, lane);
+    if (listed >= arrayLength(&cells)) {
+        return;
+    }
+    let id = voxel_of(cells[listed], lane);
     if (any(id >= sweep.dims)) {
         return;
     }

@@ -1,12 +1,19 @@
-// The light that blocks receive that has been scattered: what the last bounce brings.
+// The light that listed blocks receive that has been scattered: what the last bounce brings.
 #import "bounces/bounce.wgsl"
+#import "common/listed_cells.wgsl"
 
 @group(0) @binding(5) var<storage, read> sums: array<vec4f>;
+@group(0) @binding(6) var<storage, read> cells: array<u32>;
 @group(0) @binding(10) var bounced: texture_storage_3d<rgba16float, write>;
 
-@compute @workgroup_size(4, 4, 4)
-fn main(@builtin(global_invocation_id) id: vec3u) {
+@compute @workgroup_size(64)
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     bounce = bound_bounce;
+    let listed = listed_cell(group, lane);
+    if (listed >= arrayLength(&cells)) {
+        return;
+    }
+    let id = voxel_of(cells[listed], lane);
     if (any(id >= bounce.dims)) {
         return;
     }

@@ -61,7 +61,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let size = turned_to(rays, vec3f(sweep.dims));
     let last = size.x - 1.0;
     let start = vec2f(id.xy) + rays.first;
-    let span = slices_of_ray(rays, start, size);
+    let span = slices_of_ray(rays, id.xy, start, size);
     var light = arriving_of(rays);
     for (var n = span.x; n <= span.y; n += 1.0) {
         let slice = select(last - n, n, rays.rises == 1u);

@@ -10,3 +10,5 @@ const LISTED_PER_ROW = 16384;
 const TILE_EDGE = 8;
 const TILE_ROW_BIT = 15;
 const TILE_FIRST_BIT = 31;
+// Where the slice begins in an entry of a tile of rays that is one beyond the last (src/plan/geometry/sweep_tiles.rs).
+const END_SLICE_BIT = 16;

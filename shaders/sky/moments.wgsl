@@ -1,25 +1,33 @@
-// How open to the sky each block is: its mean transmittance over directions, V₀, and the mean of transmittance times
+// How open to the sky each listed block is: its mean transmittance over directions, V₀, and the mean of transmittance times
 // direction, V₁, gathered from the rays of a batch around its middle, and added to those of the batches before.
 #import "sky/rays.wgsl"
+#import "common/listed_cells.wgsl"
 
 @group(0) @binding(1) var sheets: texture_3d<f32>;
 @group(0) @binding(2) var clamped: sampler;
+// A sum for each of the listed blocks.
 @group(0) @binding(3) var<storage, read_write> sums: array<vec4f>;
 // V₁ in rgb, V₀ in a.
 @group(0) @binding(4) var moments: texture_storage_3d<rgba16float, write>;
+@group(0) @binding(5) var<storage, read> cells: array<u32>;
 
 // Rays of a batch. Not a number of the uniform's: drivers lay out a loop whose end they know.
 override DIRECTIONS: u32 = 4u;
 // Whether it is the last, and the mean is known.
 override IS_LAST: bool = true;
 
-@compute @workgroup_size(4, 4, 4)
-fn main(@builtin(global_invocation_id) id: vec3u) {
+@compute @workgroup_size(64)
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     sweep = bound_sweep;
+    let listed = listed_cell(group, lane);
+    if (listed >= arrayLength(&cells)) {
+        return;
+    }
+    let id = voxel_of(cells[listed], lane);
     if (any(id >= sweep.dims)) {
         return;
     }
-    let at = (id.z * sweep.dims.y + id.y) * sweep.dims.x + id.x;
+    let at = listed_voxel(listed, lane);
     var sum = sums[at] * sweep.has_sums;
     for (var i = 0u; i < DIRECTIONS; i += 1u) {
         let rays = bound_sweep.rays[i];

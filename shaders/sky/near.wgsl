@@ -1,5 +1,9 @@
-// Where rays of a sky are near the grid.
+// In which slices rays of a sky are followed: where they are near the grid, and where something is met or looked up.
+#import "common/sizes.wgsl"
 #import "sky/rays.wgsl"
+
+// Of each tile of rays the first slice, and from bit 16 on one beyond the last (src/plan/geometry/sweep_tiles.rs).
+@group(0) @binding(4) var<storage, read> tiles: array<u32>;
 
 // Slices in which a ray is less than a block from the grid, along one axis across them: first, and last.
 fn slices_near(start: f32, drift: f32, blocks: f32, last: f32) -> vec2f {
@@ -9,10 +13,15 @@ fn slices_near(start: f32, drift: f32, blocks: f32, last: f32) -> vec2f {
     return clamp(vec2f(floor(min(a, b)), ceil(max(a, b))), vec2f(0.0, -1.0), vec2f(last + 1.0, last));
 }
 
-// The same along both, of a ray that crosses the first slice at `start`; of a grid of blocks, turned to the rays. None
-// where the first is larger.
-fn slices_of_ray(rays: SkyRays, start: vec2f, size: vec3f) -> vec2f {
+// The slices of a ray that crosses the first slice at `start`: first, and last; of a grid of blocks, turned to the rays.
+// None where the first is larger.
+fn slices_of_ray(rays: SkyRays, ray: vec2u, start: vec2f, size: vec3f) -> vec2f {
     let u = slices_near(start.x, rays.drift.x, size.y, size.x - 1.0);
     let v = slices_near(start.y, rays.drift.y, size.z, size.x - 1.0);
-    return vec2f(max(u.x, v.x), min(u.y, v.y));
+    let tile = ray / TILE_EDGE;
+    let columns = (rays.size.x + TILE_EDGE - 1u) / TILE_EDGE;
+    let entry = tiles[rays.first_tile + tile.y * columns + tile.x];
+    let first = f32(entry & ((1u << END_SLICE_BIT) - 1u));
+    let end = f32(entry >> END_SLICE_BIT);
+    return vec2f(max(max(u.x, v.x), first), min(min(u.y, v.y), end - 1.0));
 }

@@ -22,8 +22,8 @@ struct Blocks {
 
 @group(0) @binding(0) var<uniform> bound_blocks: Blocks;
 var<private> blocks: Blocks;
-// In g the distance in cells to the nearest that attenuates light.
-@group(0) @binding(2) var distances: texture_3d<f32>;
+// Cells of blocks in which anything may attenuate light.
+@group(0) @binding(2) var<storage, read> cells: array<u32>;
 
 // What attenuates light at an index-space point.
 fn extinction_at(p: vec3f) -> f32 {
@@ -35,15 +35,9 @@ fn extinction_at(p: vec3f) -> f32 {
     return found * share_that_shades(blocks.shading_cut, p);
 }
 
-// The middle of a block, of which there is a layer around the grid, in index space.
+// The middle of a block, in index space.
 fn middle_of(id: vec3u) -> vec3f {
-    return (vec3f(id) - 0.5) * blocks.voxel_step - 0.5;
-}
-
-// Whether anything there may attenuate light.
-fn may_attenuate(id: vec3u) -> bool {
-    let is_inside = all(id >= vec3u(1u)) && all(id <= blocks.dims);
-    return is_inside && near(distances, floor(middle_of(id) / CELL_EDGE)).y <= grid.dilation;
+    return (vec3f(id) + 0.5) * blocks.voxel_step - 0.5;
 }
 
 // One of the eight.

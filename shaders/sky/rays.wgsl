@@ -23,9 +23,10 @@ struct SkyRays {
     layer: u32,
     // 1, or 0 where a batch has fewer.
     weight: f32,
+    // Of its tiles among those of the batch.
+    first_tile: u32,
     pad0: f32,
     pad1: f32,
-    pad2: f32,
 }
 
 struct Sweep {

@@ -26,6 +26,7 @@ pub use self::geometry::reach::{
 pub use self::geometry::sheet_frame::{MAX_STRETCH_LEVEL, PixelLinear, SheetFrame};
 pub use self::geometry::slice_order::SliceOrder;
 pub use self::geometry::sweep::{SweepFrame, directions_above, sweep_directions};
+pub use self::geometry::sweep_tiles::{END_SLICE_BIT, SweepTiles, boxes_around};
 pub use keys::{
     Attenuation, BouncesKey, CombinedKey, DisplayKey, EyeKey, EyeTableKey, FloorKey, FrameKeys, LightKey,
     LitLight, LitLights, OneColor, OpacityKey, SkyKey, TablesKey,

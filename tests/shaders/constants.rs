@@ -4,7 +4,8 @@ use chiaroscuro::data::{BRICK_EDGE, CELL_EDGE};
 use chiaroscuro::gpu::LISTED_PER_ROW;
 use chiaroscuro::model::{LUT_SIZE, MAX_LIGHTS, THIN_SLABS};
 use chiaroscuro::plan::{
-    MAX_KERNEL_PIXELS, MAX_STRETCH_LEVEL, MIN_KERNEL_VOXELS, TILE_EDGE, TILE_FIRST_BIT, TILE_ROW_BIT,
+    END_SLICE_BIT, MAX_KERNEL_PIXELS, MAX_STRETCH_LEVEL, MIN_KERNEL_VOXELS, TILE_EDGE, TILE_FIRST_BIT,
+    TILE_ROW_BIT,
 };
 
 use crate::sources::{check, entry_shaders, joined};
@@ -77,20 +78,26 @@ fn workgroups_fill_bricks_and_tiles() {
 }
 
 /// Sizes in `common/sizes.wgsl`: their values in Rust, others with as many digits, and shaders that count on them.
-const SIZES: [(&str, usize, usize, &[&str]); 8] = [
+const SIZES: [(&str, usize, usize, &[&str]); 9] = [
     ("BRICK_EDGE", BRICK_EDGE, 4, &["light/backproject", "light/combine", "light/raycast", "scatter/splat"]),
     ("BRICK_EDGE", BRICK_EDGE, 4, &["scatter/eye", "scatter/footprints", "scatter/normalise"]),
     ("CELL_EDGE", CELL_EDGE, 4, &["eye/gather", "light/backproject", "light/march", "light/raycast"]),
-    ("CELL_EDGE", CELL_EDGE, 4, &["bounces/blocks", "sky/blocks"]),
+    (
+        "CELL_EDGE",
+        CELL_EDGE,
+        4,
+        &["bounces/blocks", "bounces/gather", "sky/blocks", "sky/clear_margin", "sky/moments"],
+    ),
     (
         "LISTED_PER_ROW",
         LISTED_PER_ROW as usize,
         32768,
         &["light/backproject", "light/combine", "light/march"],
     ),
-    ("TILE_EDGE", TILE_EDGE as usize, 4, &["eye/floor", "eye/gather", "light/march"]),
+    ("TILE_EDGE", TILE_EDGE as usize, 4, &["bounces/sweep", "eye/floor", "eye/gather", "light/march"]),
     ("TILE_ROW_BIT", TILE_ROW_BIT as usize, 14, &["light/march"]),
     ("TILE_FIRST_BIT", TILE_FIRST_BIT as usize, 30, &["light/march"]),
+    ("END_SLICE_BIT", END_SLICE_BIT as usize, 15, &["bounces/sweep", "sky/floor_sweep", "sky/sweep"]),
 ];
 
 #[test]
@@ -115,10 +122,10 @@ fn statements(source: &str) -> String {
 #[test]
 fn workgroups_have_the_size_that_the_dispatches_count_on() {
     let expected = [
-        ("bounces/blocks.wgsl", [4, 4, 4]),
+        ("bounces/blocks.wgsl", [64, 1, 1]),
         ("bounces/first.wgsl", [4, 4, 4]),
-        ("bounces/gather.wgsl", [4, 4, 4]),
-        ("bounces/outcome.wgsl", [4, 4, 4]),
+        ("bounces/gather.wgsl", [64, 1, 1]),
+        ("bounces/outcome.wgsl", [64, 1, 1]),
         ("bounces/ratio.wgsl", [256, 1, 1]),
         ("bounces/source.wgsl", [4, 4, 4]),
         ("bounces/sweep.wgsl", [8, 8, 1]),
@@ -142,9 +149,11 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
         ("scatter/resolve.wgsl", [8, 8, 1]),
         ("scatter/reverse.wgsl", [8, 8, 1]),
         ("scatter/splat.wgsl", [8, 8, 4]),
-        ("sky/blocks.wgsl", [4, 4, 4]),
+        ("sky/blocks.wgsl", [64, 1, 1]),
+        ("sky/clear_margin.wgsl", [64, 1, 1]),
         ("sky/floor_map.wgsl", [8, 8, 1]),
-        ("sky/moments.wgsl", [4, 4, 4]),
+        ("sky/floor_sweep.wgsl", [8, 8, 1]),
+        ("sky/moments.wgsl", [64, 1, 1]),
         ("sky/sweep.wgsl", [8, 8, 1]),
         ("volume/downsample.wgsl", [8, 8, 4]),
         ("volume/downsample_materials.wgsl", [8, 8, 4]),

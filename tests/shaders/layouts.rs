@@ -265,7 +265,7 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
         ),
         ("eye/gather.wgsl", layout!(Sky { red, green, blue, lookup, ahead })),
         ("sky/blocks.wgsl", layout!(Blocks { dims, voxel_step, level, offset, edge, albedo, shading_cut })),
-        ("sky/floor_map.wgsl", layout!(FloorMap { origin, share, along_x, size, along_y, pad0 })),
+        ("sky/floor_map.wgsl", layout!(FloorMap { origin, share, along_x, size, along_y, pad0, plane })),
         (
             "sky/sweep.wgsl",
             layout!(SkyRays {
@@ -279,9 +279,9 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
                 arriving,
                 layer,
                 weight,
+                first_tile,
                 pad0,
-                pad1,
-                pad2
+                pad1
             }),
         ),
         ("sky/sweep.wgsl", layout!(Sweep { dims, share, block_scale, has_sums, sheet_scale, pad0, rays })),

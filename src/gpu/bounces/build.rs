@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::steps::{BounceStep, Followed, steps};
 use super::textures::Textures;
 use super::volume::BouncesVolume;
 use crate::gpu::light::packed::pack_light;
@@ -10,46 +11,20 @@ use crate::gpu::pipelines::uniforms;
 use crate::gpu::pipelines::variant::{ColorVariant, Constants, Only, Variant, flag};
 use crate::gpu::resources::pass;
 use crate::gpu::sky::batches::{BATCH_BLOCKS, Batches, sheet_size};
-use crate::gpu::sky::blocks::BlocksPass;
+use crate::gpu::sky::blocks::{self, BlocksPass};
 use crate::gpu::sky::sweep::{GatherVariant, SweepPass};
 use crate::gpu::volume::Gpu;
+use crate::gpu::volume::listed_cells::ListedCells;
 use crate::gpu::volume::transfer_tables::Tables;
 use crate::gpu::{GpuError, RenderOptions};
 use crate::model::{MAX_LIGHTS, Settings};
-use crate::plan::{BouncesKey, LitLights, OneColor, SweepFrame, sweep_directions};
-
-/// A piece of the filling.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum BounceStep {
-    /// What light meets.
-    Blocks,
-    /// A batch of directions in which light is followed, and whose.
-    Batch(Followed, usize),
-    /// What unscattered light makes blocks give off, from a slice of them on.
-    First { slice: usize },
-    /// What so many bounces make them give off for the next.
-    Source { bounce: u32 },
-    /// What all bounces have brought.
-    Outcome,
-}
-
-/// Whose light is followed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Followed {
-    /// A sky's.
-    Sky,
-    /// What blocks give off, for what it makes them give off in turn.
-    Bounce,
-    /// The same for the last time, in more directions: what is seen.
-    Last,
-}
+use crate::plan::{BouncesKey, LitLights, OneColor, SweepFrame, boxes_around, sweep_directions};
 
 /// What of a picture bounced light is made from.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Look<'a> {
     pub tables: &'a Tables,
     pub settings: &'a Settings,
-    pub options: &'a RenderOptions,
     pub lit: &'a LitLights,
 }
 
@@ -68,6 +43,10 @@ pub(crate) struct BouncesBuild {
     has_sky: bool,
     /// That of all light, if there is one.
     one_color: Option<OneColor>,
+    /// Blocks in which something attenuates light.
+    met: ListedCells,
+    /// Blocks that pictures look up.
+    looked_up: ListedCells,
     textures: Textures,
 }
 
@@ -78,6 +57,7 @@ impl BouncesBuild {
     /// When memory is out.
     pub(crate) fn new(
         gpu: Gpu<'_>,
+        (tables, options): (&Tables, &RenderOptions),
         key: &BouncesKey,
         (has_sky, lights): (bool, usize),
         volume: &BouncesVolume,
@@ -96,8 +76,17 @@ impl BouncesBuild {
         let size = sheet_size(frames.iter().flatten(), format, followed);
         let textures = Textures::new(gpu.context, volume, size, one_color.is_some())?;
         let rays = (lights * key.points() as usize).max(1);
+        let met = blocks::met(tables, options, volume.dims, volume.divisor);
+        // What is seen of the last bounce may lie beside what light bounces off.
+        let seen = met.with(&volume.filled);
+        let [each, last] = frames;
         Ok(Self {
-            batches: frames.map(|frames| Batches::new(frames, size[2])),
+            batches: [
+                Batches::new(each, size[2], &boxes_around(&met)),
+                Batches::new(last, size[2], &boxes_around(&seen)),
+            ],
+            met: ListedCells::new(gpu.context, &met),
+            looked_up: ListedCells::new(gpu.context, &volume.filled),
             dims: volume.dims,
             rays,
             bounces: key.bounces(),
@@ -110,23 +99,8 @@ impl BouncesBuild {
 
     /// Its pieces, in order.
     pub(crate) fn steps(&self) -> Vec<BounceStep> {
-        let batches = |followed: Followed| {
-            let count = self.batches(followed).count();
-            (0..count).map(move |batch| BounceStep::Batch(followed, batch))
-        };
-        let mut steps = vec![BounceStep::Blocks];
-        if self.has_sky {
-            steps.extend(batches(Followed::Sky));
-        }
-        let slices = self.slices_at_once();
-        steps.extend((0..self.dims[2]).step_by(slices).map(|slice| BounceStep::First { slice }));
-        for bounce in 0..self.bounces {
-            steps.push(BounceStep::Source { bounce });
-            let is_last = bounce + 1 == self.bounces;
-            steps.extend(batches(if is_last { Followed::Last } else { Followed::Bounce }));
-        }
-        steps.push(BounceStep::Outcome);
-        steps
+        let slices = (self.dims[2], self.slices_at_once());
+        steps(self.bounces, self.has_sky, slices, |followed| self.batches(followed).count())
     }
 
     /// So many slices of blocks cast rays to lights at once that they take no more steps than a batch of directions.
@@ -143,7 +117,7 @@ impl BouncesBuild {
 
     /// Bytes that only the filling needs.
     pub(crate) fn bytes(&self) -> u64 {
-        self.textures.bytes
+        self.textures.bytes + self.met.bytes() + self.looked_up.bytes()
     }
 
     /// Records a piece.
@@ -184,6 +158,11 @@ impl BouncesBuild {
         self.one_color.map_or(light, |one| DVec3::splat(one.amount(light)))
     }
 
+    /// The blocks that get the light that is followed.
+    fn reached(&self, followed: Followed) -> &ListedCells {
+        if followed == Followed::Last { &self.looked_up } else { &self.met }
+    }
+
     /// A shader that reads what is followed.
     fn variant(&self, shader: &'static str) -> ColorVariant {
         ColorVariant { shader, one_color: self.one_color.is_some() }
@@ -203,7 +182,7 @@ impl BouncesBuild {
     fn fill_blocks(
         &self,
         gpu: Gpu<'_>,
-        Look { tables, settings, options, .. }: Look<'_>,
+        Look { tables, settings, .. }: Look<'_>,
         volume: &BouncesVolume,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
@@ -216,9 +195,9 @@ impl BouncesBuild {
             albedo: scattering.albedo,
             one_color: self.one_color.is_some(),
             format: self.textures.medium_format,
+            cells: &self.met,
             tables,
             settings,
-            options,
         };
         let entries = [
             buffer("look_table", tables.eye.gathered()),
@@ -246,17 +225,17 @@ impl BouncesBuild {
             self.followed_of(DVec3::from([0, 1, 2].map(of)))
         };
         let batches = self.batches(followed);
-        let frames = batches.frames(batch);
         let pass = SweepPass {
             shader: "bounces/sweep.wgsl",
             one_color: self.one_color.is_some(),
-            frames,
+            rays: batches.rays(batch),
             dims: volume.dims,
             sheets,
             is_first: batch == 0,
             share: 0.0,
         };
-        let uniform = pass.record(gpu, view_of("medium", medium), arriving, encoder)?;
+        let entries = [view_of("medium", medium), view_of("sheets", &sheets.view)];
+        let uniform = pass.record(gpu, &entries, arriving, encoder)?;
 
         let gather = gpu.shaders.pipeline(&GatherVariant::of("bounces/gather.wgsl", batches))?;
         let shared = self.shared(gpu, volume, followed);
@@ -267,9 +246,11 @@ impl BouncesBuild {
             buffer("bound_bounce", &shared),
             buffer("scattering", scattering),
             buffer("sums", sums),
+            self.reached(followed).entry(),
         ];
         let own = gpu.bind("Bounces::gather", &gather, 0, &entries);
-        pass::dispatch(encoder, "Bounces::gather", &gather, &[&own], groups_of(volume));
+        let groups = self.reached(followed).workgroups();
+        pass::dispatch(encoder, "Bounces::gather", &gather, &[&own], groups);
         Ok(())
     }
 
@@ -352,11 +333,15 @@ impl BouncesBuild {
                 buffer("change", change),
                 buffer("ratio", ratio),
             ]),
-            _ => entries.push(view_of("bounced", &volume.view)),
+            _ => entries.extend([view_of("bounced", &volume.view), self.looked_up.entry()]),
         }
         let pipeline = gpu.shaders.pipeline_into(variant, self.textures.medium_format)?;
         let own = gpu.bind("Bounces::whole", &pipeline, 0, &entries);
-        let groups = if shader == "bounces/ratio.wgsl" { [1; 3] } else { groups_of(volume) };
+        let groups = match shader {
+            "bounces/ratio.wgsl" => [1; 3],
+            "bounces/outcome.wgsl" => self.looked_up.workgroups(),
+            _ => groups_of(volume),
+        };
         pass::dispatch(encoder, "Bounces::whole", &pipeline, &[&own], groups);
         Ok(())
     }

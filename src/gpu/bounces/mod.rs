@@ -6,5 +6,6 @@
 //! are three or more.
 
 pub(super) mod build;
+pub(super) mod steps;
 mod textures;
 pub(super) mod volume;

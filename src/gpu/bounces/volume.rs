@@ -1,10 +1,13 @@
 //! The volume of light that has bounced.
 
+use std::sync::Arc;
+
 use crate::gpu::resources::fill_time::FillTime;
 use crate::gpu::sky::volume::{SUM_BYTES, divisor_for};
 use crate::gpu::volume::texture_3d;
 use crate::gpu::{Context, GpuError};
 use crate::model::Resolution;
+use crate::plan::CellSet;
 
 /// Most texels that the rays of one direction may take: 256 MiB of sheets of colours.
 const MOST_TEXELS: u64 = 1 << 25;
@@ -18,20 +21,31 @@ pub(crate) struct BouncesVolume {
     pub divisor: usize,
     /// Linear RGB.
     pub view: wgpu::TextureView,
+    /// Cells (of blocks) that hold, or will hold, values.
+    pub filled: Arc<CellSet>,
     /// How long it took.
     pub fill: FillTime,
     /// Counts up with every use; the least recently used goes first.
     pub last_used: u64,
 }
 
+/// Voxels along the edge of a block at a resolution, on an adapter.
+pub(crate) fn divisor_on(context: &Context, grid: [usize; 3], resolution: Resolution) -> usize {
+    let most_sums = context.device.limits().max_storage_buffer_binding_size / SUM_BYTES;
+    divisor_for(grid, resolution, (MOST_TEXELS, most_sums))
+}
+
 impl BouncesVolume {
-    /// Makes the texture; nothing is filled yet.
+    /// Makes the texture, of blocks of `divisor`³ voxels; nothing is filled yet.
     ///
     /// # Errors
     /// When memory is out.
-    pub(crate) fn new(context: &Context, grid: [usize; 3], resolution: Resolution) -> Result<Self, GpuError> {
-        let most_sums = context.device.limits().max_storage_buffer_binding_size / SUM_BYTES;
-        let divisor = divisor_for(grid, resolution, (MOST_TEXELS, most_sums));
+    pub(crate) fn new(
+        context: &Context,
+        grid: [usize; 3],
+        divisor: usize,
+        filled: Arc<CellSet>,
+    ) -> Result<Self, GpuError> {
         let dims = grid.map(|n| n.div_ceil(divisor));
         let texture = context.texture(&texture_3d(
             "BouncesVolume::texture",
@@ -42,7 +56,7 @@ impl BouncesVolume {
                 | wgpu::TextureUsages::COPY_SRC,
         ))?;
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        Ok(Self { dims, divisor, view, fill: FillTime::default(), last_used: 0 })
+        Ok(Self { dims, divisor, view, filled, fill: FillTime::default(), last_used: 0 })
     }
 
     /// Index space to texture coordinates: (p + ½) × lookup.

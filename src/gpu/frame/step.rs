@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::ops::Range;
 
-use crate::gpu::bounces::build::BounceStep;
+use crate::gpu::bounces::steps::BounceStep;
 use crate::gpu::eye::floor;
 use crate::gpu::resources::part::Part;
 use crate::gpu::volume::transfer_tables::{Table, Tables};

@@ -76,11 +76,12 @@ impl Renderer {
         self.texels(&found.value.view)
     }
 
-    /// Draws a small picture, and says which.
+    /// Draws a small picture with volumes that are filled everywhere, and says which.
     fn drawn_request(&mut self, dataset: &Dataset, settings: &Settings) -> Result<Request, GpuError> {
+        let options = RenderOptions { fill_everything: true, ..RenderOptions::default() };
         let settings = &*settings.as_drawn(dataset.volume());
         let size = [8, 8];
-        self.draw(dataset, settings, size, &RenderOptions::default())?;
+        self.draw(dataset, settings, size, &options)?;
         Ok(Request { volume: dataset.volume().id(), settings: settings.clone(), size, coarse: None })
     }
 

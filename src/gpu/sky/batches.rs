@@ -1,7 +1,10 @@
 //! In which batches light is followed, and how much room their rays take.
 
+use glam::DVec3;
+use rayon::prelude::*;
+
 use crate::gpu::pipelines::uniforms::MAX_SKY_RAYS;
-use crate::plan::SweepFrame;
+use crate::plan::{SweepFrame, SweepTiles};
 
 /// Blocks times directions of a batch: some 0.2 s on a software adapter.
 pub(crate) const BATCH_BLOCKS: usize = 1 << 23;
@@ -41,33 +44,52 @@ pub(crate) fn sheet_size<'a>(
     [width, height, slices * best.max(SMALL_BATCH_BYTES / bytes).min(most).max(1)]
 }
 
+/// The rays of a direction.
+#[derive(Debug)]
+pub(crate) struct Rays {
+    pub frame: SweepFrame,
+    /// Where they have to be followed.
+    pub tiles: SweepTiles,
+}
+
 /// Directions in which light is followed, batch by batch.
 #[derive(Debug)]
 pub(crate) struct Batches {
-    frames: Vec<SweepFrame>,
+    rays: Vec<Rays>,
     /// Directions of a batch; of the last, they may be fewer.
     each: usize,
 }
 
 impl Batches {
-    /// As few as sheets of so many layers have room for, and as take no longer than they may.
-    pub(crate) fn new(frames: Vec<SweepFrame>, layers: usize) -> Self {
+    /// As few as sheets of so many layers have room for, and as take no longer than they may. Rays are followed through boxes,
+    /// in blocks.
+    pub(crate) fn new(frames: Vec<SweepFrame>, layers: usize, boxes: &[[DVec3; 2]]) -> Self {
         let slices = frames.iter().map(SweepFrame::slices).max().unwrap_or(1);
+        Self::of_at_most(layers / slices, frames, boxes)
+    }
+
+    /// The same of rays that keep what is left of them at their ends alone.
+    pub(crate) fn of_ends(frames: Vec<SweepFrame>, boxes: &[[DVec3; 2]]) -> Self {
+        Self::of_at_most(MAX_SKY_RAYS, frames, boxes)
+    }
+
+    fn of_at_most(most: usize, frames: Vec<SweepFrame>, boxes: &[[DVec3; 2]]) -> Self {
         let blocks: usize = frames.first().map_or(1, |frame| frame.dims.iter().product());
-        let most = (BATCH_BLOCKS / blocks.max(1)).min(layers / slices).clamp(1, MAX_SKY_RAYS);
+        let most = (BATCH_BLOCKS / blocks.max(1)).min(most).clamp(1, MAX_SKY_RAYS);
         // As even as can be: a pass over fewer takes as long as one over all.
         let each = frames.len().div_ceil(frames.len().div_ceil(most).max(1)).max(1);
-        Self { frames, each }
+        let rays = |frame: SweepFrame| Rays { tiles: SweepTiles::through(&frame, boxes), frame };
+        Self { rays: frames.into_par_iter().map(rays).collect(), each }
     }
 
     /// How many batches there are.
     pub(crate) fn count(&self) -> usize {
-        self.frames.len().div_ceil(self.each)
+        self.rays.len().div_ceil(self.each)
     }
 
     /// How many directions there are.
     pub(crate) fn directions(&self) -> usize {
-        self.frames.len()
+        self.rays.len()
     }
 
     /// Directions of a batch; of the last, they may be fewer.
@@ -76,8 +98,13 @@ impl Batches {
     }
 
     /// Rays of a batch; none beyond the last.
-    pub(crate) fn frames(&self, batch: usize) -> &[SweepFrame] {
-        self.frames.chunks(self.each).nth(batch).unwrap_or_default()
+    pub(crate) fn rays(&self, batch: usize) -> &[Rays] {
+        self.rays.chunks(self.each).nth(batch).unwrap_or_default()
+    }
+
+    /// Columns and rows of the rays of any direction.
+    pub(crate) fn widest(&self) -> [usize; 2] {
+        [0, 1].map(|side| self.rays.iter().map(|rays| rays.frame.size[side] as usize).max().unwrap_or(1))
     }
 }
 
@@ -103,20 +130,20 @@ mod tests {
             for format in [ONE, COLORS] {
                 let frames = frames(dims, count);
                 let [width, height, layers] = sheet_size(frames.iter(), format, count as usize);
-                let batches = Batches::new(frames, layers);
+                let batches = Batches::new(frames, layers, &[]);
                 assert_eq!(batches.directions(), count as usize);
                 let mut before = 0;
                 for batch in 0..batches.count() {
-                    let frames = batches.frames(batch);
+                    let frames: Vec<_> = batches.rays(batch).iter().map(|rays| &rays.frame).collect();
                     before += frames.len();
                     assert!((1..=batches.each()).contains(&frames.len()), "{dims:?}");
-                    assert!(frames.iter().map(SweepFrame::slices).sum::<usize>() <= layers, "{dims:?}");
+                    assert!(frames.iter().map(|frame| frame.slices()).sum::<usize>() <= layers, "{dims:?}");
                     let [widest, highest] =
                         [0, 1].map(|side| frames.iter().map(|frame| frame.size[side] as usize).max());
                     assert!(widest <= Some(width) && highest <= Some(height), "{dims:?}");
                 }
                 assert_eq!(before, count as usize, "{dims:?}");
-                assert!(batches.frames(batches.count()).is_empty());
+                assert!(batches.rays(batches.count()).is_empty());
             }
         }
     }
@@ -126,7 +153,7 @@ mod tests {
         let of = |dims, count, format| {
             let frames = frames(dims, count);
             let size = sheet_size(frames.iter(), format, count as usize);
-            (Batches::new(frames, size[2]), size)
+            (Batches::new(frames, size[2], &[]), size)
         };
         let (small, [.., layers]) = of([26, 24, 41], 6, ONE);
         assert_eq!((small.count(), small.each(), layers), (1, 6, 6 * 41));

@@ -1,14 +1,15 @@
 //! What attenuates light, as mean extinctions of blocks of voxels.
 
-use crate::gpu::pipelines::binding::{Named, buffer, view_of};
+use crate::gpu::pipelines::binding::{Named, buffer};
 use crate::gpu::pipelines::uniforms;
 use crate::gpu::pipelines::variant::{Constants, Ends, Variant, flag, is_cut};
 use crate::gpu::resources::pass;
-use crate::gpu::volume::Gpu;
-use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
+use crate::gpu::volume::listed_cells::ListedCells;
+use crate::gpu::volume::transfer_tables::Tables;
+use crate::gpu::volume::{Gpu, brick_dims};
 use crate::gpu::{GpuError, RenderOptions};
 use crate::model::{Classification, Settings};
-use crate::plan::stretch_reach;
+use crate::plan::{CellSet, stretch_reach};
 
 /// The filling of blocks, by a shader that imports `sky/places.wgsl`.
 #[derive(Debug, Clone, Copy)]
@@ -26,9 +27,26 @@ pub(crate) struct BlocksPass<'a> {
     pub one_color: bool,
     /// Of the texture that is filled.
     pub format: wgpu::TextureFormat,
+    /// Blocks in which anything may attenuate light ([`met`]).
+    pub cells: &'a ListedCells,
     pub tables: &'a Tables,
     pub settings: &'a Settings,
-    pub options: &'a RenderOptions,
+}
+
+/// The level of the pyramid whose texels are as large as an eighth of a block of `divisor`³ voxels; of one voxel, that.
+fn level_of(divisor: usize) -> f64 {
+    (divisor as f64 / 2.0).max(1.0).log2()
+}
+
+/// Cells of blocks of `divisor`³ voxels in which anything may attenuate light, of a grid of so many blocks.
+pub(crate) fn met(tables: &Tables, options: &RenderOptions, dims: [usize; 3], divisor: usize) -> CellSet {
+    let bricks = brick_dims(dims);
+    if !options.empty_space_skipping {
+        return CellSet::full(bricks);
+    }
+    // Places of a block lie at most as many cells from that of its middle as it has voxels in half its edge.
+    let reach = stretch_reach(level_of(divisor)).saturating_add((divisor / 2) as u8);
+    tables.lighting.around(reach, divisor, bricks)
 }
 
 impl BlocksPass<'_> {
@@ -39,11 +57,9 @@ impl BlocksPass<'_> {
         entries: &[Named<'_>],
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let Self { shader, dims, divisor, density_scale, albedo, tables, settings, options, .. } = *self;
+        let Self { shader, dims, divisor, density_scale, albedo, cells, tables, settings, .. } = *self;
         let scene = &gpu.volume.scene;
         let shading = settings.cuts.shading();
-        // Eight places, each as large as an eighth of a block; a voxel is one place.
-        let level = (divisor as f64 / 2.0).max(1.0).log2();
         let variant = BlocksVariant {
             shader,
             one_color: self.one_color,
@@ -55,7 +71,8 @@ impl BlocksPass<'_> {
         let uniform = uniforms::Blocks {
             dims: dims.map(|n| n as u32),
             voxel_step: divisor as f32,
-            level: level as f32,
+            level: level_of(divisor) as f32,
+            // Eight places; a voxel is one.
             offset: if divisor == 1 { 0.0 } else { divisor as f32 / 4.0 },
             edge: (scene.smallest_edge() * density_scale) as f32,
             albedo: albedo as f32,
@@ -65,17 +82,12 @@ impl BlocksPass<'_> {
         let mut own = vec![
             buffer("bound_blocks", &uniform),
             buffer("table", tables.lighting.gathered()),
-            view_of("distances", &tables.light_distances),
+            cells.entry(),
         ];
         own.extend_from_slice(entries);
         let own = gpu.bind("Blocks::own", &pipeline, 0, &own);
-        // Places of a block lie at most as many cells from that of its middle as it has voxels in half its edge.
-        let seen = i32::from(stretch_reach(level)) + divisor as i32 / 2;
-        let dilation = if options.empty_space_skipping { seen } else { EVERYWHERE };
-        let pyramid = tables.lighting_pyramids(gpu.volume).own;
-        let of_volume = gpu.bind_pyramid_and_cells(&pipeline, dilation, pyramid);
-        let groups = dims.map(|n| (n as u32 + 2).div_ceil(4));
-        pass::dispatch(encoder, "Blocks::pass", &pipeline, &[&own, &of_volume], groups);
+        let of_volume = gpu.bind_pyramid_alone(&pipeline, tables.lighting_pyramids(gpu.volume).own);
+        pass::dispatch(encoder, "Blocks::pass", &pipeline, &[&own, &of_volume], cells.workgroups());
         Ok(())
     }
 }

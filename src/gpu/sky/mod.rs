@@ -5,6 +5,7 @@
 
 pub(super) mod batches;
 pub(super) mod blocks;
+pub(super) mod build;
 pub(super) mod floor_map;
 pub(super) mod sheets;
 pub(super) mod sweep;

@@ -1,210 +1,16 @@
-//! The march of a sky's light, direction by direction.
+//! The march of light along the rays of a batch of directions.
 
 use glam::DVec3;
 
-use super::batches::{Batches, sheet_size};
-use super::blocks::BlocksPass;
-use super::floor_map::MAP_EDGE;
+use super::batches::{Batches, Rays};
 use super::sheets::RaySheets;
-use super::volume::{SUM_BYTES, SkyVolume};
-use crate::gpu::pipelines::binding::{Named, buffer, sampler, view_of};
+use crate::gpu::GpuError;
+use crate::gpu::pipelines::binding::{Named, buffer, sampler};
 use crate::gpu::pipelines::uniforms;
 use crate::gpu::pipelines::variant::{ColorVariant, Constants, Variant, flag};
 use crate::gpu::resources::pass;
-use crate::gpu::volume::transfer_tables::Tables;
-use crate::gpu::volume::{Gpu, texture_3d};
-use crate::gpu::{Context, GpuError, RenderOptions};
-use crate::model::Settings;
-use crate::plan::{SkyKey, SweepFrame, directions_above, sweep_directions};
-
-/// The filling of a volume of the sky's visibility.
-#[derive(Debug)]
-pub(crate) struct SkyBuild {
-    /// Rays from every direction.
-    around: Batches,
-    /// Rays from above, for a floor: those from all around would draw petals under what is small.
-    above: Batches,
-    /// What multiplies the extinction.
-    density_scale: f64,
-    textures: Textures,
-}
-
-/// What only the filling needs.
-#[derive(Debug)]
-struct Textures {
-    /// Optical depth of blocks, with one of nothing around the grid.
-    blocks: wgpu::TextureView,
-    /// What rays deposit.
-    sheets: RaySheets,
-    /// Moments so far.
-    sums: wgpu::Buffer,
-    /// The same of the floor's map.
-    floor_sums: Option<wgpu::Buffer>,
-    bytes: u64,
-}
-
-impl SkyBuild {
-    /// Lays out the filling of a volume.
-    ///
-    /// # Errors
-    /// When memory is out.
-    pub(crate) fn new(gpu: Gpu<'_>, key: &SkyKey, volume: &SkyVolume) -> Result<Self, GpuError> {
-        let scene = &gpu.volume.scene;
-        let frames_of = |directions: Vec<DVec3>| {
-            let frames =
-                directions.into_iter().map(|towards| SweepFrame::new(scene, volume.divisor, towards));
-            frames.collect::<Vec<_>>()
-        };
-        let around = frames_of(sweep_directions(key.directions()));
-        let up = volume.floor.as_ref().map(|floor| floor.place.up.direction());
-        let above = up.map_or_else(Vec::new, |up| frames_of(directions_above(up, key.directions())));
-        let all = around.iter().chain(&above);
-        let size = sheet_size(all, gpu.context.storage_format, around.len() + above.len());
-        let textures = Textures::new(gpu.context, volume, size)?;
-        let [around, above] = [around, above].map(|frames| Batches::new(frames, size[2]));
-        Ok(Self { around, above, density_scale: key.density_scale(), textures })
-    }
-
-    /// Batches of directions.
-    pub(crate) fn batches(&self) -> usize {
-        self.around.count() + self.above.count()
-    }
-
-    /// Bytes that only the filling needs.
-    pub(crate) fn bytes(&self) -> u64 {
-        self.textures.bytes
-    }
-
-    /// Fills the blocks with what attenuates light.
-    pub(crate) fn fill_blocks(
-        &self,
-        gpu: Gpu<'_>,
-        tables: &Tables,
-        settings: &Settings,
-        options: &RenderOptions,
-        volume: &SkyVolume,
-        encoder: &mut wgpu::CommandEncoder,
-    ) -> Result<(), GpuError> {
-        let pass = BlocksPass {
-            shader: "sky/blocks.wgsl",
-            dims: volume.dims,
-            divisor: volume.divisor,
-            density_scale: self.density_scale,
-            albedo: 0.0,
-            one_color: false,
-            format: gpu.context.storage_format,
-            tables,
-            settings,
-            options,
-        };
-        pass.record(gpu, &[view_of("extinction", &self.textures.blocks)], encoder)
-    }
-
-    /// Follows light from the directions of a batch, and adds what arrives to what came before.
-    pub(crate) fn fill_batch(
-        &self,
-        gpu: Gpu<'_>,
-        volume: &SkyVolume,
-        batch: usize,
-        encoder: &mut wgpu::CommandEncoder,
-    ) -> Result<(), GpuError> {
-        let Textures { blocks, sheets, sums, .. } = &self.textures;
-        // Those from all around come first.
-        let (batches, batch, is_above) = match batch.checked_sub(self.around.count()) {
-            None => (&self.around, batch, false),
-            Some(batch) => (&self.above, batch, true),
-        };
-        let is_last = batch + 1 == batches.count();
-        let pass = SweepPass {
-            shader: "sky/sweep.wgsl",
-            one_color: false,
-            frames: batches.frames(batch),
-            dims: volume.dims,
-            sheets,
-            is_first: batch == 0,
-            share: 1.0 / batches.directions() as f32,
-        };
-        let uniform = pass.record(gpu, view_of("extinction", blocks), |_| DVec3::ZERO, encoder)?;
-        if is_above {
-            return self.fill_floor(gpu, volume, &uniform, is_last, encoder);
-        }
-        let gather = gpu.shaders.pipeline(&GatherVariant {
-            is_last: Some(is_last),
-            ..GatherVariant::of("sky/moments.wgsl", batches)
-        })?;
-        let entries = [
-            buffer("bound_sweep", &uniform),
-            view_of("sheets", &sheets.view),
-            sampler("clamped", &gpu.volume.clamped),
-            buffer("sums", sums),
-            view_of("moments", &volume.view),
-        ];
-        let own = gpu.bind("Sky::moments", &gather, 0, &entries);
-        let groups = volume.dims.map(|n| (n as u32).div_ceil(4));
-        pass::dispatch(encoder, "Sky::moments", &gather, &[&own], groups);
-        Ok(())
-    }
-
-    /// Adds what the floor sees of a batch of directions to what came before.
-    fn fill_floor(
-        &self,
-        gpu: Gpu<'_>,
-        volume: &SkyVolume,
-        sweep: &wgpu::Buffer,
-        is_last: bool,
-        encoder: &mut wgpu::CommandEncoder,
-    ) -> Result<(), GpuError> {
-        let (Some(floor), Some(sums)) = (&volume.floor, &self.textures.floor_sums) else { return Ok(()) };
-        let uniform = floor.uniform(&gpu.volume.scene, volume.divisor, 1.0 / self.above.directions() as f64);
-        let uniform = gpu.uniform("Sky::floor_map", uniform);
-        let pipeline = gpu.shaders.pipeline(&GatherVariant {
-            is_last: Some(is_last),
-            ..GatherVariant::of("sky/floor_map.wgsl", &self.above)
-        })?;
-        let entries = [
-            buffer("bound_sweep", sweep),
-            buffer("bound_map", &uniform),
-            view_of("sheets", &self.textures.sheets.view),
-            buffer("sums", sums),
-            view_of("moments", &floor.view),
-        ];
-        let own = gpu.bind("Sky::floor_map", &pipeline, 0, &entries);
-        pass::dispatch(encoder, "Sky::floor_map", &pipeline, &[&own], pass::tiles([MAP_EDGE; 2]));
-        Ok(())
-    }
-}
-
-impl Textures {
-    fn new(context: &Context, volume: &SkyVolume, sheet_size: [usize; 3]) -> Result<Self, GpuError> {
-        let dims = volume.dims;
-        let usages = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
-        let format = context.storage_format;
-        let block_size = dims.map(|n| n + 2);
-        let blocks = context.texture(&texture_3d("Sky::blocks", block_size, format, usages))?;
-        let sheets = RaySheets::new(context, sheet_size, format)?;
-        let texels = |size: [usize; 3]| size.iter().map(|&n| n as u64).product::<u64>();
-        let sums = |label, count: u64| {
-            context.empty_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: SUM_BYTES * count,
-                usage: wgpu::BufferUsages::STORAGE,
-                mapped_at_creation: false,
-            })
-        };
-        let floor = volume.floor.as_ref().map(|_| u64::from(MAP_EDGE * MAP_EDGE));
-        let texel = u64::from(format.block_copy_size(None).unwrap_or(4));
-        let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
-        Ok(Self {
-            blocks: view(&blocks),
-            sums: sums("Sky::sums", texels(dims)),
-            floor_sums: floor.map(|texels| sums("Sky::floor_sums", texels)),
-            bytes: texel * texels(block_size)
-                + sheets.bytes()
-                + SUM_BYTES * (texels(dims) + floor.unwrap_or(0)),
-            sheets,
-        })
-    }
-}
+use crate::gpu::volume::Gpu;
+use crate::plan::SweepFrame;
 
 /// A batch of directions in which light is followed through blocks, by a shader that imports `sky/rays.wgsl`.
 #[derive(Debug, Clone, Copy)]
@@ -212,10 +18,10 @@ pub(crate) struct SweepPass<'a> {
     pub shader: &'static str,
     /// Whether light has one colour all through (`bounces/sweep.wgsl`).
     pub one_color: bool,
-    pub frames: &'a [SweepFrame],
+    pub rays: &'a [Rays],
     /// Blocks along x, y and z.
     pub dims: [usize; 3],
-    /// What is filled.
+    /// What is filled: a layer for each slice of each direction, or for each direction.
     pub sheets: &'a RaySheets,
     /// Whether nothing has been summed before.
     pub is_first: bool,
@@ -224,23 +30,25 @@ pub(crate) struct SweepPass<'a> {
 }
 
 impl SweepPass<'_> {
-    /// Records it: light that arrives from directions goes through what `blocks` name, into the sheets. Returns what the passes
-    /// that gather from these need to know.
+    /// Records it: light that arrives from directions goes through blocks into sheets, both of which are among the `entries`.
+    /// Returns what the passes that gather from these need to know.
     pub(crate) fn record(
         &self,
         gpu: Gpu<'_>,
-        blocks: Named<'_>,
+        entries: &[Named<'_>],
         arriving: impl Fn(DVec3) -> DVec3,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<wgpu::Buffer, GpuError> {
-        let Self { shader, one_color, frames, dims, sheets, is_first, share } = *self;
+        let Self { shader, one_color, rays, dims, sheets, is_first, share } = *self;
         let edge = gpu.volume.scene.smallest_edge();
         // What is left over has no weight, and no rays.
-        let mut rays = [bytemuck::Zeroable::zeroed(); uniforms::MAX_SKY_RAYS];
+        let mut packed = [bytemuck::Zeroable::zeroed(); uniforms::MAX_SKY_RAYS];
         let mut layer = 0;
-        for (slot, frame) in rays.iter_mut().zip(frames) {
-            *slot = pack(frame, edge, layer, arriving(frame.towards));
+        let mut tiles: Vec<u32> = Vec::new();
+        for (slot, Rays { frame, tiles: own }) in packed.iter_mut().zip(rays) {
+            *slot = pack(frame, edge, (layer, tiles.len()), arriving(frame.towards));
             layer += frame.slices();
+            tiles.extend(&own.0);
         }
         let reciprocal = |size: [usize; 3]| size.map(|n| 1.0 / n as f32);
         let uniform = uniforms::Sweep {
@@ -250,26 +58,27 @@ impl SweepPass<'_> {
             has_sums: if is_first { 0.0 } else { 1.0 },
             sheet_scale: reciprocal(sheets.size),
             pad0: 0.0,
-            rays,
+            rays: packed,
         };
         let uniform = gpu.uniform("Sweep::uniform", uniform);
+        let tiles = gpu.list("Sweep::tiles", &tiles);
         let pipeline = gpu.shaders.pipeline_into(&ColorVariant { shader, one_color }, sheets.format)?;
-        let entries = [
+        let mut own = vec![
             buffer("bound_sweep", &uniform),
-            blocks,
             sampler("clamped", &gpu.volume.clamped),
-            view_of("sheets", &sheets.view),
+            buffer("tiles", &tiles),
         ];
-        let own = gpu.bind("Sweep::own", &pipeline, 0, &entries);
-        let across = |side: usize| frames.iter().map(|frame| frame.size[side]).max().unwrap_or(1).div_ceil(8);
-        let groups = [across(0), across(1), frames.len() as u32];
-        pass::dispatch(encoder, "Sweep::pass", &pipeline, &[&own], groups);
+        own.extend_from_slice(entries);
+        let own = gpu.bind("Sweep::own", &pipeline, 0, &own);
+        let [columns, rows, _] = sheets.size.map(|n| n.div_ceil(8) as u32);
+        pass::dispatch(encoder, "Sweep::pass", &pipeline, &[&own], [columns, rows, rays.len() as u32]);
         Ok(uniform)
     }
 }
 
-/// The rays of a direction for the shaders, from which so much light arrives; `edge` is that of a voxel.
-fn pack(frame: &SweepFrame, edge: f64, layer: usize, arriving: DVec3) -> uniforms::SkyRays {
+/// The rays of a direction for the shaders, from which so much light arrives; `edge` is that of a voxel, and layer and tile are
+/// the first among all.
+fn pack(frame: &SweepFrame, edge: f64, (layer, tile): (usize, usize), arriving: DVec3) -> uniforms::SkyRays {
     uniforms::SkyRays {
         towards: frame.towards.as_vec3().into(),
         step: (frame.step / edge) as f32,
@@ -281,9 +90,9 @@ fn pack(frame: &SweepFrame, edge: f64, layer: usize, arriving: DVec3) -> uniform
         arriving: arriving.as_vec3().into(),
         layer: layer as u32,
         weight: 1.0,
+        first_tile: tile as u32,
         pad0: 0.0,
         pad1: 0.0,
-        pad2: 0.0,
     }
 }
 
@@ -301,6 +110,11 @@ impl GatherVariant {
     /// That of a shader which stores no mean.
     pub(crate) fn of(shader: &'static str, batches: &Batches) -> Self {
         Self { shader, directions: batches.each(), is_last: None }
+    }
+
+    /// That of a shader which stores the mean when a batch is the last.
+    pub(crate) fn with_mean(shader: &'static str, batches: &Batches, batch: usize) -> Self {
+        Self { is_last: Some(batch + 1 == batches.count()), ..Self::of(shader, batches) }
     }
 }
 

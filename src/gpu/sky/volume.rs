@@ -1,11 +1,18 @@
 //! The volume of the sky's visibility.
 
+use std::sync::Arc;
+
 use super::floor_map::FloorMap;
+use crate::gpu::pipelines::binding::view_of;
+use crate::gpu::pipelines::variant::Only;
 use crate::gpu::resources::fill_time::FillTime;
-use crate::gpu::volume::texture_3d;
+use crate::gpu::resources::pass;
+use crate::gpu::volume::listed_cells::ListedCells;
+use crate::gpu::volume::{Gpu, texture_3d};
 use crate::gpu::{Context, GpuError};
+use crate::math::SceneSpace;
 use crate::model::Resolution;
-use crate::plan::FloorPlace;
+use crate::plan::{CellSet, FloorPlace};
 
 /// Bytes of four sums of a block.
 pub(crate) const SUM_BYTES: u64 = 16;
@@ -24,6 +31,10 @@ pub(crate) struct SkyVolume {
     pub view: wgpu::TextureView,
     /// What the floor sees of the sky, where there was one when it was filled.
     pub floor: Option<FloorMap>,
+    /// Cells (of blocks) that hold, or will hold, values.
+    pub filled: Arc<CellSet>,
+    /// Cells around them, which only previews look up: nothing is in the way of the sky there.
+    pub margin: CellSet,
     /// How long it took.
     pub fill: FillTime,
     /// Counts up with every use; the least recently used goes first.
@@ -31,19 +42,18 @@ pub(crate) struct SkyVolume {
 }
 
 impl SkyVolume {
-    /// Makes the texture; nothing is filled yet.
+    /// Makes the texture, of blocks of `divisor`³ voxels; nothing is filled yet.
     ///
     /// # Errors
     /// When memory is out.
     pub(crate) fn new(
         context: &Context,
-        grid: [usize; 3],
-        resolution: Resolution,
+        scene: &SceneSpace,
+        divisor: usize,
+        (filled, margin): (Arc<CellSet>, CellSet),
         floor: Option<FloorPlace>,
     ) -> Result<Self, GpuError> {
-        let most_sums = context.device.limits().max_storage_buffer_binding_size / SUM_BYTES;
-        let divisor = divisor_for(grid, resolution, (MOST_TEXELS, most_sums));
-        let dims = grid.map(|n| n.div_ceil(divisor));
+        let dims = scene.dims.map(|n| n.div_ceil(divisor));
         let texture = context.texture(&texture_3d(
             "SkyVolume::texture",
             dims,
@@ -53,8 +63,27 @@ impl SkyVolume {
                 | wgpu::TextureUsages::COPY_SRC,
         ))?;
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let floor = floor.map(|place| FloorMap::new(context, place)).transpose()?;
-        Ok(Self { dims, divisor, view, floor, fill: FillTime::default(), last_used: 0 })
+        let block = scene.smallest_edge() * divisor as f64;
+        let floor = floor.map(|place| FloorMap::new(context, place, block)).transpose()?;
+        Ok(Self { dims, divisor, view, floor, filled, margin, fill: FillTime::default(), last_used: 0 })
+    }
+
+    /// Opens the margin to all of the sky.
+    pub(crate) fn clear_margin(
+        &self,
+        gpu: Gpu<'_>,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let cells = ListedCells::new(gpu.context, &self.margin);
+        let pipeline = gpu.shaders.pipeline(&Only("sky/clear_margin.wgsl"))?;
+        let own = gpu.bind(
+            "SkyVolume::clear_margin",
+            &pipeline,
+            0,
+            &[cells.entry(), view_of("moments", &self.view)],
+        );
+        pass::dispatch(encoder, "SkyVolume::clear_margin", &pipeline, &[&own], cells.workgroups());
+        Ok(())
     }
 
     /// Index space to texture coordinates: (p + ½) × lookup.
@@ -64,9 +93,15 @@ impl SkyVolume {
 
     /// Bytes of its texture.
     pub(crate) fn bytes(&self) -> u64 {
-        let map = if self.floor.is_some() { FloorMap::bytes() } else { 0 };
-        map + 8 * self.dims.iter().map(|&n| n as u64).product::<u64>()
+        self.floor.as_ref().map_or(0, FloorMap::bytes)
+            + 8 * self.dims.iter().map(|&n| n as u64).product::<u64>()
     }
+}
+
+/// The same on an adapter.
+pub(crate) fn divisor_on(context: &Context, grid: [usize; 3], resolution: Resolution) -> usize {
+    let most_sums = context.device.limits().max_storage_buffer_binding_size / SUM_BYTES;
+    divisor_for(grid, resolution, (MOST_TEXELS, most_sums))
 }
 
 /// Voxels along the edge of a block: those of a resolution, or more where the rays of one direction would take more texels

@@ -2,6 +2,7 @@
 
 pub(super) mod gradients;
 pub(super) mod listed_bricks;
+pub(super) mod listed_cells;
 pub(super) mod materials;
 pub(super) mod prefilter;
 pub(super) mod presence;
@@ -101,22 +102,16 @@ impl Gpu<'_> {
         )
     }
 
-    /// Bind group 1 of passes that look at a pyramid alone, and leap over cells.
-    pub(crate) fn bind_pyramid_and_cells(
-        &self,
-        pipeline: &Pipeline,
-        dilation: i32,
-        pyramid: &LevelViews,
-    ) -> wgpu::BindGroup {
+    /// Bind group 1 of passes that look at a pyramid alone, and at what of it is there in that.
+    pub(crate) fn bind_pyramid_alone(&self, pipeline: &Pipeline, pyramid: &LevelViews) -> wgpu::BindGroup {
         let volume = self.volume;
-        let grid = self.uniform("Volume::grid", volume.grid(dilation));
+        let grid = self.uniform("Volume::grid", volume.grid(0));
         let entries = [
             buffer("bound_grid", &grid),
             view_of("pyramid_texture", &pyramid.all),
             sampler("clamped", &volume.clamped),
-            sampler("nearest", &volume.nearest),
         ];
-        self.bind("Volume::cells_bind_group", pipeline, 1, &entries)
+        self.bind("Volume::pyramid_alone_bind_group", pipeline, 1, &entries)
     }
 
     /// Bind group 1 of the passes that sample density.

@@ -112,6 +112,11 @@ impl Table {
         if thinnest < KERNEL_AT_FACES * level.exp2() { Ends::BetweenFaces } else { Ends::AtFaces }
     }
 
+    /// Cells of `divisor`³ voxels, on a grid of `bricks`, that lie up to so many data cells from any that it shows.
+    pub(crate) fn around(&self, reach: u8, divisor: usize, bricks: [usize; 3]) -> CellSet {
+        self.distances.within(reach, divisor, bricks)
+    }
+
     /// What it was baked to.
     pub(crate) fn baked(&self) -> &Arc<BakedTransfer> {
         &self.baked

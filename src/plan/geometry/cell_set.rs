@@ -69,15 +69,7 @@ impl CellSet {
     #[must_use]
     pub fn coarsened(&self, factor: usize, bricks: [usize; 3]) -> Self {
         let mut coarse = Self { dims: bricks, masks: vec![0; bricks.iter().product()] };
-        for (brick, mask) in self.bricks() {
-            let mut left = mask;
-            while left != 0 {
-                let bit = left.trailing_zeros() as usize;
-                left &= left - 1;
-                let within = [bit % PER_BRICK, bit / PER_BRICK % PER_BRICK, bit / (PER_BRICK * PER_BRICK)];
-                coarse.insert(std::array::from_fn(|axis| (brick[axis] * PER_BRICK + within[axis]) / factor));
-            }
-        }
+        self.cells().for_each(|cell| coarse.insert(cell.map(|at| at / factor)));
         coarse
     }
 
@@ -114,6 +106,17 @@ impl CellSet {
         self.masks.iter().enumerate().filter(|(_, mask)| **mask != 0).map(brick)
     }
 
+    /// The cells, brick by brick.
+    pub fn cells(&self) -> impl Iterator<Item = [usize; 3]> + '_ {
+        self.bricks().flat_map(|(brick, mask)| {
+            let bits = (0..u64::BITS as usize).filter(move |bit| mask >> bit & 1 == 1);
+            bits.map(move |bit| {
+                let within = [bit % PER_BRICK, bit / PER_BRICK % PER_BRICK, bit / (PER_BRICK * PER_BRICK)];
+                std::array::from_fn(|axis| brick[axis] * PER_BRICK + within[axis])
+            })
+        })
+    }
+
     /// The bricks that have any of the cells.
     pub fn to_bricks(&self) -> BrickSet {
         BrickSet::new(self.dims, self.masks.iter().map(|&mask| mask != 0).collect())
@@ -137,6 +140,7 @@ mod tests {
         assert_eq!(b.without(&a).masks, [1, 8]);
         assert_eq!(a.bricks().collect::<Vec<_>>(), [([0, 0, 0], 0b0110)]);
         assert_eq!((a.count(), b.to_bricks().positions().count()), (2, 2));
+        assert_eq!(b.cells().collect::<Vec<_>>(), [[0, 0, 0], [1, 0, 0], [2, 0, 0], [7, 0, 0]]);
         assert!(b.is_within(&CellSet::full([2, 1, 1])));
     }
 

@@ -13,3 +13,4 @@ pub(super) mod reach;
 pub(super) mod sheet_frame;
 pub(super) mod slice_order;
 pub(super) mod sweep;
+pub(super) mod sweep_tiles;

@@ -105,12 +105,17 @@ impl SweepFrame {
         at.into()
     }
 
+    /// The slice of a place in blocks, which may lie between slices and beyond the grid, and where it is across them.
+    pub fn along(&self, block: DVec3) -> (f64, DVec2) {
+        let along = block[self.axis];
+        let slice = if self.rises { along } else { self.slices() as f64 - 1.0 - along };
+        (slice, DVec2::new(block[(self.axis + 1) % 3], block[(self.axis + 2) % 3]))
+    }
+
     /// The slice of a place in blocks, which may lie between slices and beyond the grid, and where it is among the rays
     /// there.
     pub fn place(&self, block: DVec3) -> (f64, DVec2) {
-        let along = block[self.axis];
-        let slice = if self.rises { along } else { self.slices() as f64 - 1.0 - along };
-        let across = DVec2::new(block[(self.axis + 1) % 3], block[(self.axis + 2) % 3]);
+        let (slice, across) = self.along(block);
         (slice, across - self.drift * slice - DVec2::new(self.first[0].into(), self.first[1].into()))
     }
 

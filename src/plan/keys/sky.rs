@@ -18,8 +18,9 @@ pub struct SkyKey {
     previewed: Resolution,
 }
 
-/// Previews follow light from so many directions.
-const PREVIEW_DIRECTIONS: u32 = 6;
+/// Previews follow light from so many directions at most: with 6 a tooth's picture is 2.8 % of white from that of 64 (root mean
+/// square), with 14 it is 0.7 %, and with 26 it would be 0.6 %.
+const PREVIEW_DIRECTIONS: u32 = 14;
 
 impl SkyKey {
     /// The key of the volume that a picture needs; `None` where nothing attenuates a sky.
@@ -40,7 +41,8 @@ impl SkyKey {
     /// The key of a preview's volume.
     #[must_use]
     pub fn coarse(&self) -> Self {
-        Self { directions: PREVIEW_DIRECTIONS, resolution: self.previewed, ..self.clone() }
+        let directions = self.directions.min(PREVIEW_DIRECTIONS);
+        Self { directions, resolution: self.previewed, ..self.clone() }
     }
 
     /// From how many directions light is followed.

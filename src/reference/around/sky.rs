@@ -2,7 +2,7 @@
 //!
 //! Stored are moments over directions ω of the transmittance T from there to beyond the volume: V₀ = ⟨T⟩ and V₁ = ⟨T ω⟩.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use crate::model::{Kernel, SKY_AHEAD};
@@ -61,8 +61,8 @@ impl Reference<'_> {
         Openness { dims, divisor, mean: mean_of(3), first: [mean_of(0), mean_of(1), mean_of(2)] }
     }
 
-    /// Rays from as many directions above and as fine as the settings say, and what they deposit; none where nothing attenuates
-    /// a sky.
+    /// Rays from as many directions above and as fine as the settings say, and what is left of each where it meets the floor;
+    /// none where nothing attenuates a sky.
     pub(in crate::reference) fn sky_rays(&self) -> Vec<(SweepFrame, Vec<f64>)> {
         let sky = &self.settings.sky;
         if !self.settings.has_sky_volume() {
@@ -70,12 +70,17 @@ impl Reference<'_> {
         }
         let divisor = self.sky_divisor();
         let extinction = self.sky_blocks(self.scene.dims.map(|n| n.div_ceil(divisor)), divisor);
+        let up = self.settings.camera.up.direction();
+        // How far above the floor a place in blocks is.
+        let above = |block: DVec3| {
+            let index = (block + 0.5) * divisor as f64 - 0.5;
+            self.scene.scene_from_index.transform_point3(index).dot(up) - self.settings.floor.height
+        };
         let of = |towards| {
             let frame = SweepFrame::new(&self.scene, divisor, towards);
-            let deposits = march(&frame, &extinction);
-            (frame, deposits)
+            let left = left_at_floor(&frame, &extinction, above);
+            (frame, left)
         };
-        let up = self.settings.camera.up.direction();
         directions_above(up, sky.directions).into_iter().map(of).collect()
     }
 
@@ -96,9 +101,9 @@ impl Reference<'_> {
         }
         let place = (point + 0.5) / self.sky_divisor() as f64 - 0.5;
         let seen = [0, 1, 2].map(|c| {
-            let from = |(frame, deposits): &(SweepFrame, Vec<f64>)| {
+            let from = |(frame, left): &(SweepFrame, Vec<f64>)| {
                 let radiance = sky.mean[c] + sky.slope[c].dot(frame.towards);
-                radiance * passed(frame, deposits, place)
+                radiance * arriving(frame, left, place)
             };
             rays.iter().map(from).sum::<f64>() / rays.len() as f64
         });
@@ -184,25 +189,59 @@ impl Reference<'_> {
     }
 }
 
+/// The optical depths of a ray's slices.
+fn depths<'a>(frame: &'a SweepFrame, extinction: &'a [f64], ray: usize) -> impl Iterator<Item = f64> + 'a {
+    let ray = [ray as u32 % frame.size[0], ray as u32 / frame.size[0]];
+    (0..frame.slices()).map(move |slice| {
+        let block = frame.block(slice as f64, frame.crossing(ray, slice));
+        bordered(frame.dims, extinction, block) * frame.step
+    })
+}
+
+/// The mean transmittance over a slice of an optical depth: (1 − e^−τ)/τ.
+fn mean_over(depth: f64) -> f64 {
+    if depth < 1e-12 { 1.0 } else { -(-depth).exp_m1() / depth }
+}
+
+fn count_of(frame: &SweepFrame) -> usize {
+    frame.size.iter().map(|&n| n as usize).product()
+}
+
 /// What each ray deposits in each slice: the mean transmittance over it.
 fn march(frame: &SweepFrame, extinction: &[f64]) -> Vec<f64> {
-    let [width, height] = frame.size;
-    let slices = frame.slices();
     let of_ray = |ray: usize| {
-        let ray = [ray as u32 % width, ray as u32 / width];
         let mut transmittance = 1.0;
-        let mut deposits = Vec::with_capacity(slices);
-        for slice in 0..slices {
-            let block = frame.block(slice as f64, frame.crossing(ray, slice));
-            let depth = bordered(frame.dims, extinction, block) * frame.step;
-            // (1 − e^−τ)/τ.
-            let mean = if depth < 1e-12 { 1.0 } else { -(-depth).exp_m1() / depth };
-            deposits.push(transmittance * mean);
+        depths(frame, extinction, ray).map(move |depth| {
+            let deposit = transmittance * mean_over(depth);
             transmittance *= (-depth).exp();
-        }
-        deposits
+            deposit
+        })
     };
-    (0..(width * height) as usize).into_par_iter().flat_map_iter(of_ray).collect()
+    (0..count_of(frame)).into_par_iter().flat_map_iter(of_ray).collect()
+}
+
+/// What is left of each ray where it meets a floor over which places in blocks lie so high: on the mean over the slice in which
+/// that is; all of it before the first, and what has gone through behind the last.
+fn left_at_floor(frame: &SweepFrame, extinction: &[f64], above: impl Fn(DVec3) -> f64 + Sync) -> Vec<f64> {
+    let last = frame.slices() - 1;
+    let of_ray = |ray: usize| {
+        let at = [ray as u32 % frame.size[0], ray as u32 / frame.size[0]];
+        let height = |slice: usize| above(frame.block(slice as f64, frame.crossing(at, slice)));
+        // Heights fall evenly along a ray; a grid of one slice has no second one to tell by.
+        let next = above(frame.block(1.0, frame.crossing(at, 1)));
+        let in_slice = (height(0) / (height(0) - next) + 0.5).floor();
+        if in_slice < 0.0 {
+            return 1.0;
+        }
+        let whole: f64 = depths(frame, extinction, ray)
+            .zip(0..=last)
+            .take_while(|(_, at)| (*at as f64) < in_slice)
+            .map(|(depth, _)| depth)
+            .sum();
+        let reached = depths(frame, extinction, ray).nth(in_slice as usize).map_or(1.0, mean_over);
+        (-whole).exp() * reached
+    };
+    (0..count_of(frame)).into_par_iter().map(of_ray).collect()
 }
 
 /// Between blocks, and to nothing within a block of the grid.
@@ -228,21 +267,26 @@ pub(in crate::reference) fn bordered(dims: [usize; 3], values: &[f64], at: DVec3
     (0..8).map(corner).sum()
 }
 
-/// What of the light gets to a place in block units, which may lie beside or behind the grid: between the four rays around
-/// it, each as far as it has come there.
-fn passed(frame: &SweepFrame, deposits: &[f64], place: DVec3) -> f64 {
-    let last = frame.slices() as f64 - 1.0;
-    let (n, ray) = frame.place(place);
-    let low = ray.floor();
-    let share = ray - low;
+/// What of the light gets to a block: between the four rays around it.
+fn passed(frame: &SweepFrame, deposits: &[f64], block: DVec3) -> f64 {
+    let (slice, ray) = frame.place(block);
+    between_rays(frame, ray, |ray| deposits[ray * frame.slices() + slice as usize])
+}
+
+/// What of the light gets to a place of the floor in blocks, which may lie beside or under the grid.
+fn arriving(frame: &SweepFrame, left: &[f64], place: DVec3) -> f64 {
+    let (_, ray) = frame.place(place);
+    between_rays(frame, ray, |ray| left[ray])
+}
+
+/// Between the four rays around a place among them; beside all of them nothing is in the way.
+fn between_rays(frame: &SweepFrame, place: DVec2, of_ray: impl Fn(usize) -> f64) -> f64 {
+    let low = place.floor();
+    let share = place - low;
     let at = |i: f64, j: f64| {
         let (i, j) = (low.x + i, low.y + j);
         let is_ray = i >= 0.0 && j >= 0.0 && i < f64::from(frame.size[0]) && j < f64::from(frame.size[1]);
-        if !is_ray || n < 0.0 {
-            return 1.0;
-        }
-        let slice = (n + 0.5).floor().min(last) as usize;
-        deposits[(i as usize + j as usize * frame.size[0] as usize) * frame.slices() + slice]
+        if is_ray { of_ray(i as usize + j as usize * frame.size[0] as usize) } else { 1.0 }
     };
     let row = |j: f64| at(0.0, j) * (1.0 - share.x) + at(1.0, j) * share.x;
     row(0.0) * (1.0 - share.y) + row(1.0) * share.y

@@ -17,7 +17,7 @@ mod colored_shadows;
 mod gather;
 mod labels;
 mod limit;
-mod mutations;
+pub(crate) mod mutations;
 mod presence;
 mod scatter;
 mod sky;

@@ -66,7 +66,7 @@ fn disagree_about(volume: Volume, settings: &Settings, from: &str, to: &str, fau
 }
 
 /// A mutation must change the shader that it is meant for: a text that is not there proves nothing.
-pub(super) fn in_shader(shader: &str, from: &str) {
+pub(crate) fn in_shader(shader: &str, from: &str) {
     let source = ShaderLibrary::source(shader, wgpu::TextureFormat::R16Float, wgpu::TextureFormat::R16Float)
         .expect("the shader is there");
     assert!(source.contains(from), "{shader} no longer contains {from:?}");

@@ -1,7 +1,7 @@
 //! Light from all around against the reference: what is open of the sky, and pictures under it.
 
 use chiaroscuro::data::{Dataset, Volume};
-use chiaroscuro::gpu::Renderer;
+use chiaroscuro::gpu::{Renderer, ShaderLibrary};
 use chiaroscuro::model::{
     Classification, CropBox, CutEffect, Engine, LightStorage, Resolution, Settings, ShadowAlgorithm, Sides,
     Sky, SkyMode,
@@ -10,6 +10,7 @@ use chiaroscuro::reference::{Fault, Openness, Options, Reference};
 use glam::DVec3;
 
 use super::check_volume;
+use super::mutations::in_shader;
 use super::presence::{two_lobes, waves};
 use crate::common::context;
 use crate::compare::{compare, flat32};
@@ -102,6 +103,30 @@ fn mistakes_in_it_are_noticed() {
     let mirrored: Vec<f64> =
         of(&settings, Fault::None).chunks(4).flat_map(|m| [-m[0], -m[1], -m[2], m[3]]).collect();
     differs("light from the other side", &mirrored);
+}
+
+#[test]
+fn mistakes_in_where_rays_are_followed_are_noticed() {
+    let (volume, mut settings) = (creature(), under_a_sky(scenes::look()));
+    settings.sky.resolution = Resolution::Full;
+    let right = moments(&volume, &settings);
+    let mistakes = [
+        ("sky/sweep.wgsl", "end - 1.0", "end - 2.0"),
+        ("sky/sweep.wgsl", "v.x), first)", "v.x), first + 1.0)"),
+        ("sky/sweep.wgsl", "rays.first_tile + tile.y * columns", "tile.y * columns"),
+        ("sky/moments.wgsl", "listed * 8u + lane % 8u", "listed * 8u"),
+        ("sky/blocks.wgsl", "id + 1u", "id"),
+    ];
+    for (shader, from, to) in mistakes {
+        in_shader(shader, from);
+        let context = context();
+        let shaders = ShaderLibrary::with_mutation(&context, from, to);
+        let mut renderer = Renderer::with_shaders(&context, shaders).expect("a renderer");
+        let found =
+            renderer.openness(&Dataset::new(volume.clone()), &settings).expect("moments are read back");
+        let found = flat32(&found);
+        assert!(compare(to, &found, &right, SAME_OPENNESS).is_err(), "{shader}: {to:?} is not noticed");
+    }
 }
 
 #[test]

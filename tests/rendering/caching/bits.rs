@@ -3,7 +3,7 @@
 use chiaroscuro::data::{Samples, Volume};
 use chiaroscuro::gpu::{RenderOptions, Renderer};
 use chiaroscuro::model::{
-    Kernel, LightKind, LightStorage, Quadrature, Resolution, Settings, ShadowAlgorithm, Slabs,
+    Kernel, LightKind, LightStorage, Quadrature, Resolution, Settings, ShadowAlgorithm, SkyMode, Slabs,
 };
 use chiaroscuro::plan::Request;
 use glam::DVec3;
@@ -64,7 +64,26 @@ fn looks() -> Vec<Settings> {
     let mut thick = looks[2].clone();
     (thick.shadows.quadrature, thick.shadows.slab) = (Quadrature::Two, 2.0);
     looks.extend([quartered, cropped, near, thick]);
+    looks.extend(lit_from_around());
     looks
+}
+
+/// Looks in which rays pass what is empty by that come from all around: to places near what the eye sees, to what light
+/// bounces off, and to a floor.
+fn lit_from_around() -> [Settings; 3] {
+    let mut sky = scenes::look();
+    (sky.sky.mode, sky.sky.directions, sky.floor.on) = (SkyMode::Gradient, 9, true);
+    let mut bounces = sky.clone();
+    (bounces.scattering.bounces, bounces.scattering.directions) = (3, 6);
+    bounces.sky.resolution = Resolution::Quarter;
+    // Light meets less than the eye sees; and pixels are wide.
+    let mut apart = sky.clone();
+    apart.lighting.linked = false;
+    apart.lighting.curve = apart.transfer.clone();
+    apart.lighting.curve.points.iter_mut().for_each(|point| point.value += 40.0);
+    apart.sky.resolution = Resolution::Full;
+    apart.camera.distance = 11.0;
+    [sky, bounces, apart]
 }
 
 /// Bricks are skipped: not a bit may change. Sheets are streamed in chunks: the ring's layers move, so fetches between
@@ -83,6 +102,7 @@ fn check_skipping(is_meant: impl Fn(usize, u32) -> bool) {
             ..RenderOptions::default()
         });
         assert_eq!(usual.light, plodding.light, "look {at}: skipping empty space changes the picture");
+        assert_eq!(usual.shown, plodding.shown, "look {at}: skipping empty space changes what is shown");
         let parts = picture(&RenderOptions { light_parts: 3, ..RenderOptions::default() });
         assert_eq!(usual.light, parts.light, "look {at}: cutting chunks into parts changes the picture");
         for chunk in CHUNKS.into_iter().filter(|&chunk| is_meant(at, chunk)) {

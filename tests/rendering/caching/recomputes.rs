@@ -2,7 +2,9 @@
 
 use chiaroscuro::data::Dataset;
 use chiaroscuro::gpu::{Context, RenderOptions, Renderer, Runs, ShaderLibrary};
-use chiaroscuro::model::{ControlPoint, Light, LightKind, Settings, Shadows, TransferFunction, apply_path};
+use chiaroscuro::model::{
+    ControlPoint, Light, LightKind, Settings, Shadows, SkyMode, TransferFunction, apply_path,
+};
 use glam::DVec3;
 
 use crate::common::context;
@@ -188,6 +190,38 @@ fn a_sky_costs_a_picture_unless_something_else_is_in_its_way() {
         let runs = bench.runs(&lit, &changed, &RenderOptions::default());
         assert_eq!((cost(runs), runs.sky), (expected, filled), "{path} = {value}");
     }
+}
+
+/// Light from all around is found where it is looked up: an eye that sees more fills more, and once it has, one volume serves
+/// whatever it sees of that. Previews, whose pixels are wide, make do with what there is.
+#[test]
+fn an_eye_that_sees_more_fills_more_once() {
+    let bench = Bench::new();
+    let mut few = home();
+    (few.sky.mode, few.sky.directions) = (SkyMode::White, 6);
+    (few.scattering.bounces, few.scattering.directions) = (1, 6);
+    // Light meets the bright core alone.
+    few.lighting.linked = false;
+    let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
+    few.lighting.curve.points = vec![point(210.0, 0.0), point(250.0, 0.5)];
+    few.transfer.points = few.lighting.curve.points.clone();
+    let mut more = few.clone();
+    more.transfer.points = vec![point(8.0, 0.0), point(250.0, 0.5)];
+    let dataset = Dataset::new(scenes::creature(40, DVec3::ONE));
+    let mut renderer = Renderer::with_shaders(&bench.context, bench.shaders.clone()).expect("a renderer");
+    let mut filled = |settings: &Settings, preview: bool| {
+        let options = RenderOptions { preview, ..RenderOptions::default() };
+        renderer.draw(&dataset, settings, SIZE, &options).expect("a picture");
+        let runs = renderer.report().runs;
+        (runs.sky, runs.bounces)
+    };
+    assert_eq!(filled(&few, false), (1, 1));
+    let mut far = few.clone();
+    far.camera.distance *= 20.0;
+    assert_eq!(filled(&far, true), (0, 0), "a preview whose samples see farther");
+    assert_eq!(filled(&more, false), (1, 1));
+    assert_eq!(filled(&few, false), (0, 0));
+    assert_eq!(filled(&more, false), (0, 0));
 }
 
 /// Light bounces anew where lights, colours or what is in its way are others, and never because of the view.

@@ -1,6 +1,6 @@
 //! The floor: against the reference, against closed forms, and under the picture.
 
-use chiaroscuro::gpu::{RenderOptions, Renderer};
+use chiaroscuro::gpu::{RenderOptions, Renderer, ShaderLibrary};
 use chiaroscuro::model::{
     Background, Camera, Deposit, Fit, Floor, Hood, Kernel, Length, LightKind, LightShape, ObjectTurn,
     Projection, Resolution, SceneAxis, Settings, ShadowAlgorithm, Sky, SkyMode, ToneMap, linear_from_srgb,
@@ -8,6 +8,7 @@ use chiaroscuro::model::{
 use chiaroscuro::reference::{Options, Reference};
 use glam::DVec3;
 
+use crate::against_reference::mutations::in_shader;
 use crate::common::{Dataset, context, render};
 use crate::compare::{Limit, compare};
 use crate::scenes::{self, linear_extinction, straight};
@@ -39,23 +40,33 @@ fn check_against(
     name: &str,
     limit: Limit,
 ) {
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
     let loaded = Dataset::new(scenes::creature(40, spacing_mm));
+    let [found, expected] = seen(&mut renderer, size, &loaded, [settings, of_reference]);
+    assert!(expected.iter().sum::<f64>() > 10.0, "{name}: there is a floor to see");
+    compare(name, &found, &expected, limit).unwrap_or_else(|err| panic!("{err}"));
+}
+
+/// The floor of a GPU's renderer with one look past what covers it, and of the reference with another.
+fn seen(
+    renderer: &mut Renderer,
+    size: [u32; 2],
+    loaded: &Dataset,
+    [settings, of_reference]: [&Settings; 2],
+) -> [Vec<f64>; 2] {
     let rounding: fn(f32) -> f32 = |value| half::f16::from_f32(value).to_f32();
     let options = Options { rounding: Some(rounding), ..Options::default() };
     let reference = Reference::new(loaded.volume(), of_reference, options);
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
-    let picture = render(&mut renderer, &loaded, settings, size);
+    let picture = render(renderer, loaded, settings, size);
     let floor = renderer.read_floor().expect("a floor");
     let past = |floor: [f64; 4], at: usize| {
         let through = 1.0 - f64::from(picture.light[at][3]);
         floor.map(|channel| channel * through)
     };
-    let found: Vec<f64> =
-        floor.iter().enumerate().flat_map(|(at, texel)| past(texel.map(f64::from), at)).collect();
-    let expected: Vec<f64> =
+    let found = floor.iter().enumerate().flat_map(|(at, texel)| past(texel.map(f64::from), at)).collect();
+    let expected =
         reference.floor(size).iter().enumerate().flat_map(|(at, texel)| past(*texel, at)).collect();
-    assert!(expected.iter().sum::<f64>() > 10.0, "{name}: there is a floor to see");
-    compare(name, &found, &expected, limit).unwrap_or_else(|err| panic!("{err}"));
+    [found, expected]
 }
 
 #[test]
@@ -140,6 +151,44 @@ fn it_takes_the_light_of_a_sky() {
         check_against(SIZE, DVec3::ONE, [&settings, &dark], "another sky", FLOOR_UNDER_A_SKY);
     });
     assert!(found.is_err(), "half as bright a sky is noticed");
+}
+
+/// A floor that cuts through what stands on it has the light that comes to its height, and each mistake in how it is followed
+/// there shows.
+#[test]
+fn light_of_a_sky_ends_where_it_meets_the_floor() {
+    // In a corner of its grid, and below the floor, too.
+    let loaded =
+        Dataset::new(scenes::block(32, |[x, y, z]| x < 14 && y < 12 && (4..30).contains(&z) && x + y < 20));
+    let mut settings = on(scenes::look());
+    settings.transfer = scenes::linear_extinction(0.2);
+    (settings.floor.height, settings.camera.elevation_deg) = (-0.2, 40.0);
+    settings.sky = Sky { mode: SkyMode::White, intensity: 0.9, directions: 14, ..Sky::default() };
+    settings.lights.clear();
+    let disagrees = |from: &str, to: &str| {
+        let context = context();
+        let shaders = ShaderLibrary::with_mutation(&context, from, to);
+        let mut renderer = Renderer::with_shaders(&context, shaders).expect("a renderer");
+        let [found, expected] = seen(&mut renderer, SIZE, &loaded, [&settings; 2]);
+        compare(to, &found, &expected, FLOOR_UNDER_A_SKY).is_err()
+    };
+    assert!(!disagrees("\u{0}", ""), "undamaged sides agree");
+    let mistakes = [
+        // Through the floor, and not to it.
+        ("sky/floor_sweep.wgsl", "min(span.y, end)", "span.y"),
+        ("sky/floor_sweep.wgsl", "min(span.y, end)", "min(span.y, end - 1.0)"),
+        ("sky/floor_sweep.wgsl", "map.plane.w - dot", "-dot"),
+        // Less of it is left at the floor than on the mean over the last slice.
+        ("sky/floor_sweep.wgsl", "slab_mean(tau), n == end", "slab_mean(tau), n > end"),
+        // Light that passes the grid by is that of its border.
+        ("sky/floor_sweep.wgsl", "select(min(span.y, end), -1.0, is_beside)", "min(span.y, end)"),
+        ("sky/floor_map.wgsl", "ray + 1.5", "ray + 1.0"),
+        ("sky/floor_map.wgsl", "f32(i) + 0.5) * sweep", "0.5) * sweep"),
+    ];
+    for (shader, from, to) in mistakes {
+        in_shader(shader, from);
+        assert!(disagrees(from, to), "{shader}: {to:?} is not noticed");
+    }
 }
 
 /// A place beside what hides a quarter of the sky at most is as bright as the sky says, and one under it darker.

@@ -9,7 +9,8 @@ use super::plan::inputs;
 use super::step::{Product, Step};
 use super::targets::shown_key;
 use crate::gpu::GpuError;
-use crate::gpu::bounces::build::{BounceStep, Look};
+use crate::gpu::bounces::build::Look;
+use crate::gpu::bounces::steps::BounceStep;
 use crate::gpu::eye::floor;
 use crate::gpu::eye::looked_up::{Around, LookedUp};
 use crate::gpu::output::display::display;
@@ -249,12 +250,7 @@ impl Job<'_> {
         self.report.runs.bounces += u32::from(step == BounceStep::Blocks);
         let Some(volume) = self.around().bounces else { return Ok(()) };
         let gpu = Gpu::new(self.tools, &loaded.volume);
-        let look = Look {
-            tables: &loaded.tables.value,
-            settings: &self.request.settings,
-            options: &self.options,
-            lit: &self.lit,
-        };
+        let look = Look { tables: &loaded.tables.value, settings: &self.request.settings, lit: &self.lit };
         build.record(gpu, look, volume, step, encoder)
     }
 
@@ -275,8 +271,8 @@ impl Job<'_> {
         let Some(volume) = self.sky_volume() else { return Ok(()) };
         let gpu = Gpu::new(self.tools, &loaded.volume);
         let Some(batch) = batch else {
-            let (settings, options) = (&self.request.settings, &self.options);
-            return build.fill_blocks(gpu, &loaded.tables.value, settings, options, volume, encoder);
+            let settings = &self.request.settings;
+            return build.fill_blocks(gpu, &loaded.tables.value, settings, volume, encoder);
         };
         build.fill_batch(gpu, volume, batch, encoder)
     }

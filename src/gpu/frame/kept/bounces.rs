@@ -1,8 +1,11 @@
 //! Which volume of bounced light a picture needs, and which are kept.
 
+use std::sync::Arc;
+
+use super::reach::{cells_around, least_reach, sample_reach};
 use crate::gpu::GpuError;
 use crate::gpu::bounces::build::BouncesBuild;
-use crate::gpu::bounces::volume::BouncesVolume;
+use crate::gpu::bounces::volume::{BouncesVolume, divisor_on};
 use crate::gpu::frame::loaded::{Loaded, Wanted};
 use crate::gpu::frame::step::{Product, Step};
 use crate::gpu::resources::cached::Cached;
@@ -44,7 +47,7 @@ impl Loaded {
         tools: &Tools,
         wanted: Wanted<'_>,
     ) -> Result<PlacedBounces, GpuError> {
-        let Wanted { context, request, keys, now, .. } = wanted;
+        let Wanted { context, request, options, keys, now } = wanted;
         let known = self.bounces.len();
         self.bounces.retain(Cached::is_complete);
         if self.bounces.len() < known {
@@ -52,7 +55,16 @@ impl Loaded {
         }
         let Some(full) = &keys.bounces else { return Ok(PlacedBounces::default()) };
         let coarse = request.coarse.map(|_| full.coarse());
-        let find = |key: &BouncesKey| self.bounces.iter().position(|known| known.holds(key));
+        let cells = |divisor: usize, reach: u8| {
+            cells_around(&self.volume, &self.tables.value, options, (divisor, reach))
+        };
+        let reach = sample_reach(&self.volume, request, options.samples);
+        let least_reach = least_reach(wanted, reach);
+        let find = |key: &BouncesKey| {
+            let has_cells =
+                |known: &BouncesVolume| cells(known.divisor, least_reach).is_within(&known.filled);
+            self.bounces.iter().position(|known| known.holds(key) && has_cells(&known.value))
+        };
         let found = find(full).or_else(|| coarse.as_ref().and_then(find));
         if let Some(slot) = found {
             self.bounces[slot].value.last_used = now;
@@ -60,17 +72,26 @@ impl Loaded {
             return Ok(PlacedBounces { key: Some(key), slot: Some(slot), build: None });
         }
         let key = coarse.unwrap_or_else(|| full.clone());
+        let divisor = divisor_on(context, self.volume.volume.dims(), key.resolution());
+        // Previews look up what lies further on, too: next to nothing is seen there, and it has no light.
+        let mut filled = cells(divisor, reach);
+        // Two looks that are compared may show other things: one volume serves both.
+        for known in self.bounces.iter().filter(|known| known.holds(&key)) {
+            filled = Arc::new(filled.with(&known.value.filled));
+        }
+        self.bounces.retain(|known| !known.holds(&key));
         if self.bounces.len() >= MOST_KEPT {
             let oldest = (0..self.bounces.len()).min_by_key(|&at| self.bounces[at].value.last_used);
             oldest.map(|at| self.bounces.swap_remove(at));
         }
         tools.pool.forget_groups();
-        let mut fresh = BouncesVolume::new(context, self.volume.volume.dims(), key.resolution())?;
+        let mut fresh = BouncesVolume::new(context, self.volume.volume.dims(), divisor, filled)?;
         fresh.last_used = now;
         let slot = self.bounces.len();
         let settings = &request.settings;
         let light = (settings.sky.is_on(), settings.lights.iter().filter(|light| light.on).count());
-        let build = BouncesBuild::new(Gpu::new(tools, &self.volume), &key, light, &fresh)?;
+        let gpu = Gpu::new(tools, &self.volume);
+        let build = BouncesBuild::new(gpu, (&self.tables.value, options), &key, light, &fresh)?;
         self.bounces.push(Cached::unfilled(key.clone(), fresh));
         Ok(PlacedBounces { key: Some(key), slot: Some(slot), build: Some(build) })
     }

@@ -4,27 +4,22 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::reach::{least_reach, needed_cells, picture_reach, widest};
 use crate::data::BRICK_EDGE;
 use crate::gpu::frame::light_build::LightBuild;
 use crate::gpu::frame::loaded::{Loaded, Wanted};
 use crate::gpu::light::combine::CombinedLight;
 use crate::gpu::light::volume::{Filling, LightVolume};
 use crate::gpu::resources::cached::Cached;
+use crate::gpu::volume::GpuVolume;
 use crate::gpu::volume::transfer_tables::{Needs, Tables};
-use crate::gpu::volume::{GpuVolume, brick_dims};
 use crate::gpu::{GpuError, RenderOptions};
-use crate::model::{MAX_BIAS_VOXELS, NearField, SceneLight, Settings, ShadowAlgorithm};
-use crate::plan::{
-    BrickSet, CellSet, CellsAhead, FARTHEST, FloorPlace, FrameKeys, LightKey, MAX_STRETCH_LEVEL, Request,
-    bias_reach, lookup_reach, picture_frame, slab_reach, stretch_reach,
-};
+use crate::model::{NearField, SceneLight, Settings, ShadowAlgorithm};
+use crate::plan::{BrickSet, CellSet, CellsAhead, FARTHEST, FloorPlace, FrameKeys, LightKey, lookup_reach};
 
 /// Light volumes that are kept beyond those of the current picture, if it does not have more itself:
 /// undoing a drag finds them, and two looks that are compared do not push out each other's.
 const SPARE_LIGHT_VOLUMES: usize = 2;
-
-/// The reach of samples of previews, whose pixels may be as wide as kernels stretch.
-const WIDEST: f64 = MAX_STRETCH_LEVEL;
 
 /// The light of a picture: where it is, and what must be done before.
 #[derive(Debug, Default)]
@@ -37,25 +32,6 @@ pub(in crate::gpu::frame) struct PlacedLights {
     pub builds: Vec<LightBuild>,
     /// Bricks of the combined volume, if it must be filled first.
     pub bricks_to_combine: Option<usize>,
-}
-
-/// How many cells from what the transfer functions show a picture looks up light: as far as its samples
-/// see, and a light bias further. Every direction to look from has the same, so that orbiting refills nothing.
-fn picture_reach(volume: &GpuVolume, request: &Request, samples: u32) -> u8 {
-    let Request { settings, size, .. } = request;
-    let size = size.map(|n| n * samples);
-    let scene = &volume.scene;
-    let frame = picture_frame(settings, scene, size);
-    let stretch = frame.stretch_level(scene.support_radius() + frame.slab);
-    let [width, height] = size.map(f64::from);
-    let obliquity = frame.obliquity(0.0, 0.0).max(frame.obliquity(width, height));
-    let slab = slab_reach(scene, frame.slab, obliquity, settings.sampling.quadrature);
-    let towards_light = match settings.near_field() {
-        // Any bias fills for the largest, so that the next needs nothing.
-        NearField::Off if settings.shadows.bias_voxels > 0.0 => bias_reach(MAX_BIAS_VOXELS),
-        _ => 0,
-    };
-    stretch_reach(stretch).saturating_add(slab).saturating_add(towards_light)
 }
 
 /// Where, from its samples, a picture looks up a light whose volume has voxels of `divisor` data voxels.
@@ -90,23 +66,6 @@ fn floor_of(volume: &GpuVolume, tables: &Tables, settings: &Settings, points: u3
     let BrickSet { dims: [nx, ny, _], members } = &*tables.lighting.occupied;
     let mut bricks = members.iter().enumerate().filter(|(_, member)| **member).map(|(at, _)| at);
     (!bricks.any(|at| is_below([at % nx, at / nx % ny, at / (nx * ny)]))).then_some(place)
-}
-
-/// Cells of a light volume, of `divisor` data voxels per voxel, in which a picture can look whose samples
-/// reach so far and that looks up light ahead of them.
-fn needed_cells(
-    volume: &GpuVolume,
-    tables: &Tables,
-    options: &RenderOptions,
-    Needs { reach, divisor, ahead }: Needs,
-) -> Arc<CellSet> {
-    if options.fill_everything {
-        let dims = volume.volume.dims().map(|n| n.div_ceil(divisor));
-        return Arc::new(CellSet::full(brick_dims(dims)));
-    }
-    let around =
-        if ahead == CellsAhead::default() { lookup_reach(divisor) } else { CellsAhead::reach(divisor) };
-    tables.needed_cells(volume, Needs { reach: reach.saturating_add(around), divisor, ahead })
 }
 
 /// How far, in data cells around what the transfer functions show, a light volume is read.
@@ -200,8 +159,8 @@ impl Loaded {
             let light = settings.lights[index].in_scene(&settings.camera);
             lookups_ahead(volume, settings, &light, key.resolution().divisor())
         };
-        // A preview makes do with what a picture at full quality looks up; the margin lets all light pass.
-        let least_reach = if request.coarse.is_some() || options.preview { 0 } else { reach };
+        // The margin lets all light pass.
+        let least_reach = least_reach(wanted, reach);
         let usable = |known: &Cached<LightKey, LightVolume>, index: usize, key: &LightKey| {
             let least = needed(key, least_reach, ahead_of(index, key));
             let floor = floor_of(volume, &tables.value, settings, key.samples());
@@ -238,7 +197,7 @@ impl Loaded {
                     sets.reduce(|a, b| Arc::new(a.with(&b))).unwrap_or_default()
                 };
                 let filled = all(reach);
-                let margin = all(reach.max(stretch_reach(WIDEST))).without(&filled);
+                let margin = all(reach.max(widest())).without(&filled);
                 let reach = read_around(options, key.resolution().divisor(), reach, &aheads);
                 let floor = floor_of(volume, &tables.value, settings, key.samples());
                 let filling = Filling { filled, margin, reach, aheads, floor };

@@ -2,4 +2,5 @@
 
 pub(super) mod bounces;
 pub(in crate::gpu) mod light;
+mod reach;
 pub(super) mod sky;

@@ -1,12 +1,15 @@
 //! Which volume of the sky's visibility a picture needs, and which are kept.
 
+use std::sync::Arc;
+
+use super::reach::{cells_around, least_reach, sample_reach, widest};
 use crate::gpu::GpuError;
 use crate::gpu::frame::loaded::{Loaded, Wanted};
 use crate::gpu::frame::step::{Product, Step};
 use crate::gpu::resources::cached::Cached;
 use crate::gpu::resources::tools::Tools;
-use crate::gpu::sky::sweep::SkyBuild;
-use crate::gpu::sky::volume::SkyVolume;
+use crate::gpu::sky::build::SkyBuild;
+use crate::gpu::sky::volume::{SkyVolume, divisor_on};
 use crate::gpu::volume::Gpu;
 use crate::plan::{FloorPlace, SkyKey};
 
@@ -45,7 +48,7 @@ impl Loaded {
         tools: &Tools,
         wanted: Wanted<'_>,
     ) -> Result<PlacedSky, GpuError> {
-        let Wanted { context, request, keys, now, .. } = wanted;
+        let Wanted { context, request, options, keys, now } = wanted;
         let known = self.skies.len();
         self.skies.retain(Cached::is_complete);
         if self.skies.len() < known {
@@ -57,8 +60,17 @@ impl Loaded {
         let floor = FloorPlace::of(&request.settings);
         let has_floor =
             |known: &SkyVolume| floor.is_none() || known.floor.as_ref().map(|map| map.place) == floor;
-        let find =
-            |key: &SkyKey| self.skies.iter().position(|known| known.holds(key) && has_floor(&known.value));
+        let cells = |divisor: usize, reach: u8| {
+            cells_around(&self.volume, &self.tables.value, options, (divisor, reach))
+        };
+        let reach = sample_reach(&self.volume, request, options.samples);
+        // The margin is open.
+        let least_reach = least_reach(wanted, reach);
+        let has_cells = |known: &SkyVolume| cells(known.divisor, least_reach).is_within(&known.filled);
+        let find = |key: &SkyKey| {
+            let is_usable = |known: &SkyVolume| has_floor(known) && has_cells(known);
+            self.skies.iter().position(|known| known.holds(key) && is_usable(&known.value))
+        };
         let found = find(full).or_else(|| coarse.as_ref().and_then(find));
         if let Some(slot) = found {
             self.skies[slot].value.last_used = now;
@@ -66,16 +78,25 @@ impl Loaded {
             return Ok(PlacedSky { key: Some(key), slot: Some(slot), build: None });
         }
         let key = coarse.unwrap_or_else(|| full.clone());
+        let divisor = divisor_on(context, self.volume.volume.dims(), key.resolution());
+        let mut filled = cells(divisor, reach);
+        let mut margin = cells(divisor, reach.max(widest())).without(&filled);
+        // Two looks that are compared may show other things: one volume serves both.
+        for known in self.skies.iter().filter(|known| known.holds(&key)) {
+            filled = Arc::new(filled.with(&known.value.filled));
+            margin = margin.with(&known.value.margin).without(&filled);
+        }
         self.skies.retain(|known| !known.holds(&key));
         if self.skies.len() >= MOST_KEPT {
             let oldest = (0..self.skies.len()).min_by_key(|&at| self.skies[at].value.last_used);
             oldest.map(|at| self.skies.swap_remove(at));
         }
         tools.pool.forget_groups();
-        let mut fresh = SkyVolume::new(context, self.volume.volume.dims(), key.resolution(), floor)?;
+        let mut fresh = SkyVolume::new(context, &self.volume.scene, divisor, (filled, margin), floor)?;
         fresh.last_used = now;
         let slot = self.skies.len();
-        let build = SkyBuild::new(Gpu::new(tools, &self.volume), &key, &fresh)?;
+        let gpu = Gpu::new(tools, &self.volume);
+        let build = SkyBuild::new(gpu, (&self.tables.value, options), &key, &fresh)?;
         self.skies.push(Cached::unfilled(key.clone(), fresh));
         Ok(PlacedSky { key: Some(key), slot: Some(slot), build: Some(build) })
     }

@@ -1,7 +1,7 @@
 //! What the shaders of scattered light bind.
 
-use super::sky::SWEEP;
-use super::{CLAMPED, GRID, Layouts, NEAREST, PYRAMID_TEXTURE, TABLE, TABLE_BYTES};
+use super::sky::{CELLS, SWEEP, TILES};
+use super::{CLAMPED, GRID, Layouts, PYRAMID_TEXTURE, TABLE, TABLE_BYTES};
 use crate::gpu::pipelines::binding::{Access, Format, Shape, Slot};
 use crate::gpu::pipelines::uniforms;
 
@@ -19,13 +19,13 @@ pub(super) const LAYOUTS: Layouts = &[
             &[
                 Slot::uniform::<uniforms::Blocks>(0, "bound_blocks"),
                 TABLE,
-                Slot::sampled(2, "distances", Shape::Volume),
+                CELLS,
                 Slot::list(4, "look_table", TABLE_BYTES, Access::Read),
                 Slot::sampled(5, "look_pyramid", Shape::Volume),
                 Slot::list(6, "scattering", 16, Access::ReadWrite),
                 Slot::target(7, "medium", Shape::Volume, Format::Target),
             ],
-            &[GRID, PYRAMID_TEXTURE, CLAMPED, NEAREST],
+            &[GRID, PYRAMID_TEXTURE, CLAMPED],
         ],
     ),
     (
@@ -49,9 +49,18 @@ pub(super) const LAYOUTS: Layouts = &[
             BOUNCE,
             SCATTERING,
             Slot::list(5, "sums", 16, Access::ReadWrite),
+            Slot::list(6, "cells", 4, Access::Read),
         ]],
     ),
-    ("bounces/outcome.wgsl", &[&[BOUNCE, SUMS, Slot::target(10, "bounced", Shape::Volume, SIXTEEN_BITS)]]),
+    (
+        "bounces/outcome.wgsl",
+        &[&[
+            BOUNCE,
+            SUMS,
+            Slot::list(6, "cells", 4, Access::Read),
+            Slot::target(10, "bounced", Shape::Volume, SIXTEEN_BITS),
+        ]],
+    ),
     (
         "bounces/ratio.wgsl",
         &[&[
@@ -83,6 +92,7 @@ pub(super) const LAYOUTS: Layouts = &[
             Slot::sampled(1, "medium", Shape::Volume),
             Slot::sampler(2, "clamped"),
             Slot::target(3, "sheets", Shape::Volume, Format::Target),
+            TILES,
         ]],
     ),
 ];

@@ -1,11 +1,19 @@
 //! What the shaders of a sky bind.
 
-use super::{CLAMPED, GRID, Layouts, NEAREST, PYRAMID_TEXTURE, TABLE};
+use super::{CLAMPED, GRID, Layouts, PYRAMID_TEXTURE, TABLE};
 use crate::gpu::pipelines::binding::{Access, Format, Shape, Slot};
 use crate::gpu::pipelines::uniforms;
 
 /// Rays through blocks.
 pub(super) const SWEEP: Slot = Slot::uniform::<uniforms::Sweep>(0, "bound_sweep");
+
+/// Where they are followed.
+pub(super) const TILES: Slot = Slot::list(4, "tiles", 4, Access::Read);
+
+/// Blocks in which something is met.
+pub(super) const CELLS: Slot = Slot::list(2, "cells", 4, Access::Read);
+
+const FLOOR_PLACE: Slot = Slot::uniform::<uniforms::FloorMap>(5, "bound_map");
 
 /// Shaders in `shaders/sky`.
 pub(super) const LAYOUTS: Layouts = &[
@@ -15,20 +23,39 @@ pub(super) const LAYOUTS: Layouts = &[
             &[
                 Slot::uniform::<uniforms::Blocks>(0, "bound_blocks"),
                 TABLE,
-                Slot::sampled(2, "distances", Shape::Volume),
+                CELLS,
                 Slot::target(3, "extinction", Shape::Volume, Format::Storage),
             ],
-            &[GRID, PYRAMID_TEXTURE, CLAMPED, NEAREST],
+            &[GRID, PYRAMID_TEXTURE, CLAMPED],
         ],
+    ),
+    (
+        "sky/clear_margin.wgsl",
+        &[&[
+            Slot::list(0, "cells", 4, Access::Read),
+            Slot::target(1, "moments", Shape::Volume, Format::Of(wgpu::TextureFormat::Rgba16Float)),
+        ]],
     ),
     (
         "sky/floor_map.wgsl",
         &[&[
             SWEEP,
-            Slot::uniform::<uniforms::FloorMap>(1, "bound_map"),
-            Slot::loaded(2, "sheets", Shape::Volume),
+            Slot::sampled(1, "left", Shape::Volume),
+            Slot::sampler(2, "clamped"),
             Slot::list(3, "sums", 16, Access::ReadWrite),
             Slot::target(4, "moments", Shape::Volume, Format::Of(wgpu::TextureFormat::Rgba16Float)),
+            FLOOR_PLACE,
+        ]],
+    ),
+    (
+        "sky/floor_sweep.wgsl",
+        &[&[
+            SWEEP,
+            Slot::sampled(1, "extinction", Shape::Volume),
+            Slot::sampler(2, "clamped"),
+            Slot::target(3, "left", Shape::Volume, Format::Storage),
+            TILES,
+            FLOOR_PLACE,
         ]],
     ),
     (
@@ -39,6 +66,7 @@ pub(super) const LAYOUTS: Layouts = &[
             Slot::sampler(2, "clamped"),
             Slot::list(3, "sums", 16, Access::ReadWrite),
             Slot::target(4, "moments", Shape::Volume, Format::Of(wgpu::TextureFormat::Rgba16Float)),
+            Slot::list(5, "cells", 4, Access::Read),
         ]],
     ),
     (
@@ -48,6 +76,7 @@ pub(super) const LAYOUTS: Layouts = &[
             Slot::sampled(1, "extinction", Shape::Volume),
             Slot::sampler(2, "clamped"),
             Slot::target(3, "sheets", Shape::Volume, Format::Storage),
+            TILES,
         ]],
     ),
 ];

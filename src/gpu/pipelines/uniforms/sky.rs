@@ -45,9 +45,9 @@ pub struct SkyRays {
     pub arriving: [f32; 3],
     pub layer: u32,
     pub weight: f32,
+    pub first_tile: u32,
     pub pad0: f32,
     pub pad1: f32,
-    pub pad2: f32,
 }
 
 /// `sky/rays.wgsl`.
@@ -63,7 +63,7 @@ pub struct Sweep {
     pub rays: [SkyRays; MAX_SKY_RAYS],
 }
 
-/// `sky/floor_map.wgsl`.
+/// `sky/floor_place.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct FloorMap {
@@ -73,4 +73,5 @@ pub struct FloorMap {
     pub size: u32,
     pub along_y: [f32; 3],
     pub pad0: f32,
+    pub plane: [f32; 4],
 }

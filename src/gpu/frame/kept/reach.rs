@@ -1,0 +1,78 @@
+//! How far from what it shows a picture looks up light, and in which cells.
+
+use std::sync::Arc;
+
+use crate::gpu::RenderOptions;
+use crate::gpu::frame::loaded::Wanted;
+use crate::gpu::volume::transfer_tables::{Needs, Tables};
+use crate::gpu::volume::{GpuVolume, brick_dims};
+use crate::model::{MAX_BIAS_VOXELS, NearField, SKY_AHEAD};
+use crate::plan::{
+    CellSet, CellsAhead, MAX_STRETCH_LEVEL, Request, bias_reach, lookup_reach, picture_frame, slab_reach,
+    stretch_reach,
+};
+
+/// Cells that samples of previews see at most, whose pixels may be as wide as kernels stretch.
+pub(super) fn widest() -> u8 {
+    stretch_reach(MAX_STRETCH_LEVEL)
+}
+
+/// How many cells from what the transfer functions show a picture has samples. Every direction to look from has the same, so
+/// that orbiting refills nothing.
+pub(super) fn sample_reach(volume: &GpuVolume, request: &Request, samples: u32) -> u8 {
+    let Request { settings, size, .. } = request;
+    let size = size.map(|n| n * samples);
+    let scene = &volume.scene;
+    let frame = picture_frame(settings, scene, size);
+    let stretch = frame.stretch_level(scene.support_radius() + frame.slab);
+    let [width, height] = size.map(f64::from);
+    let obliquity = frame.obliquity(0.0, 0.0).max(frame.obliquity(width, height));
+    let slab = slab_reach(scene, frame.slab, obliquity, settings.sampling.quadrature);
+    stretch_reach(stretch).saturating_add(slab)
+}
+
+/// How many cells from what the transfer functions show a picture looks up light: as far as its samples see, and a light bias
+/// further.
+pub(super) fn picture_reach(volume: &GpuVolume, request: &Request, samples: u32) -> u8 {
+    let settings = &request.settings;
+    let towards_light = match settings.near_field() {
+        // Any bias fills for the largest, so that the next needs nothing.
+        NearField::Off if settings.shadows.bias_voxels > 0.0 => bias_reach(MAX_BIAS_VOXELS),
+        _ => 0,
+    };
+    sample_reach(volume, request, samples).saturating_add(towards_light)
+}
+
+/// What of a reach must be filled: a preview makes do with what a picture at full quality looks up.
+pub(super) fn least_reach(wanted: Wanted<'_>, reach: u8) -> u8 {
+    if wanted.request.coarse.is_some() || wanted.options.preview { 0 } else { reach }
+}
+
+/// Cells of a light volume, of `divisor` data voxels per voxel, in which a picture can look whose samples
+/// reach so far and that looks up light ahead of them.
+pub(super) fn needed_cells(
+    volume: &GpuVolume,
+    tables: &Tables,
+    options: &RenderOptions,
+    Needs { reach, divisor, ahead }: Needs,
+) -> Arc<CellSet> {
+    if options.fill_everything {
+        let dims = volume.volume.dims().map(|n| n.div_ceil(divisor));
+        return Arc::new(CellSet::full(brick_dims(dims)));
+    }
+    let around =
+        if ahead == CellsAhead::default() { lookup_reach(divisor) } else { CellsAhead::reach(divisor) };
+    tables.needed_cells(volume, Needs { reach: reach.saturating_add(around), divisor, ahead })
+}
+
+/// Cells of blocks of `divisor`³ voxels in which a picture looks up light from all around whose samples reach so far: a little
+/// in front of them.
+pub(super) fn cells_around(
+    volume: &GpuVolume,
+    tables: &Tables,
+    options: &RenderOptions,
+    (divisor, reach): (usize, u8),
+) -> Arc<CellSet> {
+    let reach = reach.saturating_add(bias_reach(SKY_AHEAD * divisor as f64));
+    needed_cells(volume, tables, options, Needs { reach, divisor, ahead: CellsAhead::default() })
+}

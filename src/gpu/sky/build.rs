@@ -1,0 +1,247 @@
+//! The filling of a volume of how open to the sky places are.
+
+use glam::DVec3;
+
+use super::batches::{Batches, sheet_size};
+use super::blocks::{self, BlocksPass};
+use super::floor_map::FloorMap;
+use super::sheets::RaySheets;
+use super::sweep::{GatherVariant, SweepPass};
+use super::volume::{SUM_BYTES, SkyVolume};
+use crate::gpu::pipelines::binding::{buffer, sampler, view_of};
+use crate::gpu::resources::pass;
+use crate::gpu::volume::listed_cells::ListedCells;
+use crate::gpu::volume::transfer_tables::Tables;
+use crate::gpu::volume::{Gpu, texture_3d};
+use crate::gpu::{Context, GpuError, RenderOptions};
+use crate::model::Settings;
+use crate::plan::{SkyKey, SweepFrame, boxes_around, directions_above, sweep_directions};
+
+/// The filling of a volume of the sky's visibility.
+#[derive(Debug)]
+pub(crate) struct SkyBuild {
+    /// Rays from every direction.
+    around: Batches,
+    /// Rays from above, for a floor: those from all around would draw petals under what is small.
+    above: Batches,
+    /// What multiplies the extinction.
+    density_scale: f64,
+    /// Blocks in which something attenuates light.
+    met: ListedCells,
+    /// Blocks that pictures look up.
+    looked_up: ListedCells,
+    textures: Textures,
+}
+
+/// What only the filling needs.
+#[derive(Debug)]
+struct Textures {
+    /// Optical depth of blocks, with one of nothing around the grid.
+    blocks: wgpu::TextureView,
+    /// What rays deposit.
+    sheets: RaySheets,
+    /// Moments so far.
+    sums: wgpu::Buffer,
+    /// What only that of the floor's map needs.
+    floor: Option<FloorTextures>,
+    bytes: u64,
+}
+
+/// What only the filling of a floor's map needs.
+#[derive(Debug)]
+struct FloorTextures {
+    /// What is left of rays where they meet the floor.
+    left: RaySheets,
+    /// Moments so far.
+    sums: wgpu::Buffer,
+}
+
+impl SkyBuild {
+    /// Lays out the filling of a volume.
+    ///
+    /// # Errors
+    /// When memory is out.
+    pub(crate) fn new(
+        gpu: Gpu<'_>,
+        (tables, options): (&Tables, &RenderOptions),
+        key: &SkyKey,
+        volume: &SkyVolume,
+    ) -> Result<Self, GpuError> {
+        let scene = &gpu.volume.scene;
+        let frames_of = |directions: Vec<DVec3>| {
+            let frames =
+                directions.into_iter().map(|towards| SweepFrame::new(scene, volume.divisor, towards));
+            frames.collect::<Vec<_>>()
+        };
+        let around = frames_of(sweep_directions(key.directions()));
+        let up = volume.floor.as_ref().map(|floor| floor.place.up.direction());
+        let above = up.map_or_else(Vec::new, |up| frames_of(directions_above(up, key.directions())));
+        let met = blocks::met(tables, options, volume.dims, volume.divisor);
+        let read = boxes_around(&met.with(&volume.filled));
+        let size = sheet_size(around.iter(), gpu.context.storage_format, around.len());
+        let around = Batches::new(around, size[2], &read);
+        let above = Batches::of_ends(above, &boxes_around(&met));
+        let [met, looked_up] = [&met, &*volume.filled].map(|cells| ListedCells::new(gpu.context, cells));
+        let textures = Textures::new(gpu.context, volume, size, &above, looked_up.voxels())?;
+        Ok(Self { around, above, density_scale: key.density_scale(), met, looked_up, textures })
+    }
+
+    /// Batches of directions.
+    pub(crate) fn batches(&self) -> usize {
+        self.around.count() + self.above.count()
+    }
+
+    /// Bytes that only the filling needs.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.textures.bytes + self.met.bytes() + self.looked_up.bytes()
+    }
+
+    /// Fills the blocks with what attenuates light.
+    pub(crate) fn fill_blocks(
+        &self,
+        gpu: Gpu<'_>,
+        tables: &Tables,
+        settings: &Settings,
+        volume: &SkyVolume,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        volume.clear_margin(gpu, encoder)?;
+        let pass = BlocksPass {
+            shader: "sky/blocks.wgsl",
+            dims: volume.dims,
+            divisor: volume.divisor,
+            density_scale: self.density_scale,
+            albedo: 0.0,
+            one_color: false,
+            format: gpu.context.storage_format,
+            cells: &self.met,
+            tables,
+            settings,
+        };
+        pass.record(gpu, &[view_of("extinction", &self.textures.blocks)], encoder)
+    }
+
+    /// Follows light from the directions of a batch, and adds what arrives to what came before.
+    pub(crate) fn fill_batch(
+        &self,
+        gpu: Gpu<'_>,
+        volume: &SkyVolume,
+        batch: usize,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        // Those from all around come first.
+        if let Some(batch) = batch.checked_sub(self.around.count()) {
+            return self.fill_floor(gpu, volume, batch, encoder);
+        }
+        let Textures { blocks, sheets, sums, .. } = &self.textures;
+        let pass = SweepPass {
+            shader: "sky/sweep.wgsl",
+            one_color: false,
+            rays: self.around.rays(batch),
+            dims: volume.dims,
+            sheets,
+            is_first: batch == 0,
+            share: 1.0 / self.around.directions() as f32,
+        };
+        let entries = [view_of("extinction", blocks), view_of("sheets", &sheets.view)];
+        let uniform = pass.record(gpu, &entries, |_| DVec3::ZERO, encoder)?;
+        let gather = GatherVariant::with_mean("sky/moments.wgsl", &self.around, batch);
+        let gather = gpu.shaders.pipeline(&gather)?;
+        let entries = [
+            buffer("bound_sweep", &uniform),
+            view_of("sheets", &sheets.view),
+            sampler("clamped", &gpu.volume.clamped),
+            buffer("sums", sums),
+            view_of("moments", &volume.view),
+            self.looked_up.entry(),
+        ];
+        let own = gpu.bind("Sky::moments", &gather, 0, &entries);
+        pass::dispatch(encoder, "Sky::moments", &gather, &[&own], self.looked_up.workgroups());
+        Ok(())
+    }
+
+    /// Follows light from the directions of a batch to the floor, and adds what it sees of it to what came before.
+    fn fill_floor(
+        &self,
+        gpu: Gpu<'_>,
+        volume: &SkyVolume,
+        batch: usize,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let Textures { blocks, floor: Some(FloorTextures { left, sums }), .. } = &self.textures else {
+            return Ok(());
+        };
+        let Some(floor) = &volume.floor else { return Ok(()) };
+        let place = floor.uniform(&gpu.volume.scene, volume.divisor, 1.0 / self.above.directions() as f64);
+        let place = gpu.uniform("Sky::floor_map", place);
+        let pass = SweepPass {
+            shader: "sky/floor_sweep.wgsl",
+            one_color: false,
+            rays: self.above.rays(batch),
+            dims: volume.dims,
+            sheets: left,
+            is_first: batch == 0,
+            share: 0.0,
+        };
+        let entries =
+            [view_of("extinction", blocks), view_of("left", &left.view), buffer("bound_map", &place)];
+        let uniform = pass.record(gpu, &entries, |_| DVec3::ZERO, encoder)?;
+        let gather = GatherVariant::with_mean("sky/floor_map.wgsl", &self.above, batch);
+        let gather = gpu.shaders.pipeline(&gather)?;
+        let entries = [
+            buffer("bound_sweep", &uniform),
+            buffer("bound_map", &place),
+            view_of("left", &left.view),
+            sampler("clamped", &gpu.volume.clamped),
+            buffer("sums", sums),
+            view_of("moments", &floor.view),
+        ];
+        let own = gpu.bind("Sky::floor_map", &gather, 0, &entries);
+        pass::dispatch(encoder, "Sky::floor_map", &gather, &[&own], pass::tiles([floor.edge; 2]));
+        Ok(())
+    }
+}
+
+impl Textures {
+    /// Room for rays of so many columns, rows and layers, and for sums of so many blocks; for those of a floor, if there is
+    /// one.
+    fn new(
+        context: &Context,
+        volume: &SkyVolume,
+        sheet_size: [usize; 3],
+        above: &Batches,
+        looked_up: u64,
+    ) -> Result<Self, GpuError> {
+        let usages = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
+        let format = context.storage_format;
+        let block_size = volume.dims.map(|n| n + 2);
+        let blocks = context.texture(&texture_3d("Sky::blocks", block_size, format, usages))?;
+        let sheets = RaySheets::new(context, sheet_size, format)?;
+        let sums = |label, count: u64| {
+            context.empty_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: SUM_BYTES * count.max(1),
+                usage: wgpu::BufferUsages::STORAGE,
+                mapped_at_creation: false,
+            })
+        };
+        let of_floor = |floor: &FloorMap| {
+            // Before them there is a column and a row of rays that pass the grid by.
+            let [width, height] = above.widest().map(|n| n + 1);
+            let left = RaySheets::new(context, [width, height, above.each()], format)?;
+            Ok(FloorTextures { left, sums: sums("Sky::floor_sums", floor.texels()) })
+        };
+        let floor = volume.floor.as_ref().map(of_floor).transpose()?;
+        let sums = sums("Sky::sums", looked_up);
+        let of_floor = floor.as_ref().map_or(0, |floor| floor.left.bytes() + floor.sums.size());
+        let texel = u64::from(format.block_copy_size(None).unwrap_or(4));
+        let block_bytes = texel * block_size.iter().map(|&n| n as u64).product::<u64>();
+        Ok(Self {
+            blocks: blocks.create_view(&wgpu::TextureViewDescriptor::default()),
+            bytes: block_bytes + sheets.bytes() + sums.size() + of_floor,
+            sheets,
+            sums,
+            floor,
+        })
+    }
+}
