@@ -38,6 +38,13 @@ impl Renderer {
         Some(self.filled(sky.is_complete(), &sky.value.fill, sky.value.bytes()))
     }
 
+    /// Voxels along the edge of a block of the sky's volume that was last used: more than were asked for where rays would take
+    /// more room than they may.
+    pub fn sky_divisor(&self) -> Option<usize> {
+        let skies = &self.loaded.as_ref()?.value.skies;
+        skies.iter().max_by_key(|sky| sky.value.last_used).map(|sky| sky.value.divisor)
+    }
+
     /// The volume of bounced light of a request at full resolution, if there is one.
     pub fn bounces_figures(&self, request: &Request) -> Option<LightFigures> {
         let wanted = BouncesKey::of(request)?;
