@@ -112,6 +112,12 @@ impl Table {
         if thinnest < KERNEL_AT_FACES * level.exp2() { Ends::BetweenFaces } else { Ends::AtFaces }
     }
 
+    /// Whether it shows anything of a cell.
+    pub(crate) fn occupies(&self, [x, y, z]: [usize; 3]) -> bool {
+        let [width, height, _] = self.distances.dims;
+        self.distances.values[x + width * (y + height * z)] == 0
+    }
+
     /// Cells of `divisor`³ voxels, on a grid of `bricks`, that lie up to so many data cells from any that it shows.
     pub(crate) fn around(&self, reach: u8, divisor: usize, bricks: [usize; 3]) -> CellSet {
         self.distances.within(reach, divisor, bricks)

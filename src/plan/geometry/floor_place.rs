@@ -2,10 +2,20 @@
 
 use glam::DVec3;
 
+use crate::data::{BRICK_EDGE, CELL_EDGE};
+use crate::math::SceneSpace;
 use crate::model::{SceneAxis, Settings};
+use crate::plan::BrickSet;
 
 /// How far a map reaches from the middle of the floor, in scene units: beyond, a volume hides next to nothing.
 const REACH: f64 = 3.0;
+
+/// So many voxels below a floor at least does something lie under it: of what stands there, kernels reach two further down, and
+/// cells are two high.
+const HARDLY_BELOW: f64 = 4.0;
+
+/// Cells along the edge of a brick.
+const PER_BRICK: usize = BRICK_EDGE / CELL_EDGE;
 
 /// Where a floor lies that takes light.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,6 +40,35 @@ impl FloorPlace {
     pub fn of(settings: &Settings) -> Option<Self> {
         let Settings { floor, camera, .. } = settings;
         floor.on.then_some(Self { height: floor.height, up: camera.up })
+    }
+
+    /// Whether something of a volume lies under it: one of the cells in these bricks, of which `is_occupied` knows.
+    pub fn has_below(
+        self,
+        scene: &SceneSpace,
+        bricks: &BrickSet,
+        is_occupied: impl Fn([usize; 3]) -> bool,
+    ) -> bool {
+        let up = self.up.direction();
+        let axes = scene.scene_from_index.matrix3.to_cols_array_2d().map(DVec3::from);
+        // How far the highest corner of a cube of so many voxels is above its middle.
+        let rise = |edge: f64| axes.iter().map(|axis| 0.5 * edge * axis.dot(up).abs()).sum::<f64>();
+        // Whether a brick or a cell is, so many voxels down.
+        let is_below = |at: [usize; 3], edge: usize, down: f64| {
+            let edge = edge as f64;
+            let middle = DVec3::from(at.map(|at| (at as f64 + 0.5) * edge - 0.5));
+            let height = scene.scene_from_index.transform_point3(middle).dot(up);
+            height + rise(edge + 2.0 * down) < self.height
+        };
+        let cells_of = |brick: [usize; 3]| {
+            (0..PER_BRICK.pow(3)).map(move |at| {
+                let within = [at % PER_BRICK, at / PER_BRICK % PER_BRICK, at / (PER_BRICK * PER_BRICK)];
+                std::array::from_fn(|axis| brick[axis] * PER_BRICK + within[axis])
+            })
+        };
+        let mut cells =
+            bricks.positions().filter(|brick| is_below(*brick, BRICK_EDGE, 0.0)).flat_map(cells_of);
+        cells.any(|cell| is_below(cell, CELL_EDGE, HARDLY_BELOW) && is_occupied(cell))
     }
 
     /// Two directions along it, and up.
@@ -70,6 +109,23 @@ mod tests {
     fn texels_of_a_length_cover_a_map() {
         for (length, edge) in [(2.0 * REACH / 300.0, 300), (2.0 * REACH / 300.5, 301)] {
             assert_eq!(FloorPlace::texels_of(length), edge);
+        }
+    }
+
+    #[test]
+    fn what_reaches_a_little_below_a_floor_does_not_lie_under_it() {
+        let scene = SceneSpace::new([24; 3], glam::DAffine3::IDENTITY);
+        let all = BrickSet::new([3; 3], vec![true; 27]);
+        // Through the middle of a brick, and above the brick at the bottom: under it lie 12 and 8 voxels.
+        for voxels in [12, 8] {
+            let height = scene.scene_from_index.transform_point3(DVec3::splat(voxels as f64 - 0.4)).z;
+            let place = FloorPlace { height, up: SceneAxis::PlusZ };
+            let has_below = |is_occupied: &dyn Fn(usize) -> bool| {
+                place.has_below(&scene, &all, |[.., z]| is_occupied(z * CELL_EDGE))
+            };
+            assert!(!has_below(&|z| z >= voxels - 4), "{voxels}: what stands there");
+            assert!(has_below(&|z| z == 0), "{voxels}: something at the bottom");
+            assert!(!place.has_below(&scene, &BrickSet::new([3; 3], vec![false; 27]), |_| true));
         }
     }
 

@@ -2,10 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
-
 use super::reach::{least_reach, needed_cells, picture_reach, widest};
-use crate::data::BRICK_EDGE;
 use crate::gpu::frame::light_build::LightBuild;
 use crate::gpu::frame::loaded::{Loaded, Wanted};
 use crate::gpu::light::combine::CombinedLight;
@@ -15,7 +12,7 @@ use crate::gpu::volume::GpuVolume;
 use crate::gpu::volume::transfer_tables::{Needs, Tables};
 use crate::gpu::{GpuError, RenderOptions};
 use crate::model::{NearField, SceneLight, Settings, ShadowAlgorithm};
-use crate::plan::{BrickSet, CellSet, CellsAhead, FARTHEST, FloorPlace, FrameKeys, LightKey, lookup_reach};
+use crate::plan::{CellSet, CellsAhead, FARTHEST, FloorPlace, FrameKeys, LightKey, lookup_reach};
 
 /// Light volumes that are kept beyond those of the current picture, if it does not have more itself:
 /// undoing a drag finds them, and two looks that are compared do not push out each other's.
@@ -46,26 +43,16 @@ fn lookups_ahead(volume: &GpuVolume, settings: &Settings, light: &SceneLight, di
 }
 
 /// Where the floor lies that has a map of what gets there of a light of so many points. It takes what has passed all of the
-/// volume, so that nothing may lie below: at most what is left of a brick that reaches above it, as under what stands there.
+/// volume, so that nothing may lie below.
 fn floor_of(volume: &GpuVolume, tables: &Tables, settings: &Settings, points: u32) -> Option<FloorPlace> {
     let place = FloorPlace::of(settings)?;
     // Rays find the colours of shadows.
     if points < 2 || settings.shadows.algorithm != ShadowAlgorithm::Splat || settings.has_colored_shadows() {
         return None;
     }
-    let scene = &volume.scene;
-    let up = place.up.direction();
-    let edge = BRICK_EDGE as f64;
-    // From the middle of a brick to its highest corner.
-    let axes = scene.scene_from_index.matrix3.to_cols_array_2d().map(DVec3::from);
-    let half: f64 = axes.into_iter().map(|axis| 0.5 * edge * axis.dot(up).abs()).sum();
-    let is_below = |brick: [usize; 3]| {
-        let middle = DVec3::from(brick.map(|at| (at as f64 + 0.5) * edge - 0.5));
-        scene.scene_from_index.transform_point3(middle).dot(up) + half < place.height
-    };
-    let BrickSet { dims: [nx, ny, _], members } = &*tables.lighting.occupied;
-    let mut bricks = members.iter().enumerate().filter(|(_, member)| **member).map(|(at, _)| at);
-    (!bricks.any(|at| is_below([at % nx, at / nx % ny, at / (nx * ny)]))).then_some(place)
+    let table = &tables.lighting;
+    let has_below = place.has_below(&volume.scene, &table.occupied, |cell| table.occupies(cell));
+    (!has_below).then_some(place)
 }
 
 /// How far, in data cells around what the transfer functions show, a light volume is read.
