@@ -1,7 +1,7 @@
 //! What the rendering tests share: a device and ways to render.
 
 pub(crate) use chiaroscuro::data::Dataset;
-use chiaroscuro::gpu::{Context, Picture, RenderOptions, Renderer};
+use chiaroscuro::gpu::{Context, Picture, RenderOptions, Renderer, ShaderLibrary};
 use chiaroscuro::model::Settings;
 
 /// A device, or a failed test: without one nothing is checked, and that must be seen.
@@ -35,4 +35,11 @@ pub(crate) fn attenuation(
         coarse: None,
     };
     renderer.attenuation(&request, light).expect("it is read back").expect("the light has a volume").values
+}
+
+/// A renderer whose shaders have something else in place of `from`.
+pub(crate) fn damaged(from: &str, to: &str) -> Renderer {
+    let context = context();
+    let shaders = ShaderLibrary::with_mutation(&context, from, to);
+    Renderer::with_shaders(&context, shaders).expect("a renderer")
 }

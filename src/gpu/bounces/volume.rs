@@ -3,14 +3,12 @@
 use std::sync::Arc;
 
 use crate::gpu::resources::fill_time::FillTime;
-use crate::gpu::sky::volume::{SUM_BYTES, divisor_for};
 use crate::gpu::volume::texture_3d;
 use crate::gpu::{Context, GpuError};
-use crate::model::Resolution;
 use crate::plan::CellSet;
 
 /// Most texels that the rays of one direction may take: 256 MiB of sheets of colours.
-const MOST_TEXELS: u64 = 1 << 25;
+pub(crate) const MOST_TEXELS: u64 = 1 << 25;
 
 /// Light that has been scattered before it reaches a block of voxels: its mean over all directions.
 #[derive(Debug)]
@@ -27,12 +25,6 @@ pub(crate) struct BouncesVolume {
     pub fill: FillTime,
     /// Counts up with every use; the least recently used goes first.
     pub last_used: u64,
-}
-
-/// Voxels along the edge of a block at a resolution, on an adapter.
-pub(crate) fn divisor_on(context: &Context, grid: [usize; 3], resolution: Resolution) -> usize {
-    let most_sums = context.device.limits().max_storage_buffer_binding_size / SUM_BYTES;
-    divisor_for(grid, resolution, (MOST_TEXELS, most_sums))
 }
 
 impl BouncesVolume {

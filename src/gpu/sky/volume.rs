@@ -18,7 +18,7 @@ use crate::plan::{CellSet, FloorPlace};
 pub(crate) const SUM_BYTES: u64 = 16;
 
 /// Most texels that the rays of one direction may take: 128 MiB of sheets.
-const MOST_TEXELS: u64 = 1 << 26;
+pub(crate) const MOST_TEXELS: u64 = 1 << 26;
 
 /// How open to the sky each block of voxels is.
 #[derive(Debug)]
@@ -98,19 +98,21 @@ impl SkyVolume {
     }
 }
 
-/// The same on an adapter.
-pub(crate) fn divisor_on(context: &Context, grid: [usize; 3], resolution: Resolution) -> usize {
+/// Voxels along the edge of a block at a resolution, on an adapter, where the rays of one direction may take so many texels: see
+/// [`divisor_for`].
+pub(crate) fn divisor_on(
+    context: &Context,
+    grid: [usize; 3],
+    resolution: Resolution,
+    most_texels: u64,
+) -> usize {
     let most_sums = context.device.limits().max_storage_buffer_binding_size / SUM_BYTES;
-    divisor_for(grid, resolution, (MOST_TEXELS, most_sums))
+    divisor_for(grid, resolution, (most_texels, most_sums))
 }
 
 /// Voxels along the edge of a block: those of a resolution, or more where the rays of one direction would take more texels
 /// than they may, or there would be more blocks than the adapter's buffers hold sums for.
-pub(crate) fn divisor_for(
-    grid: [usize; 3],
-    resolution: Resolution,
-    (most_texels, most_sums): (u64, u64),
-) -> usize {
+fn divisor_for(grid: [usize; 3], resolution: Resolution, (most_texels, most_sums): (u64, u64)) -> usize {
     let mut divisor = resolution.divisor();
     let texels = |divisor: usize| {
         let [x, y, z] = grid.map(|n| n.div_ceil(divisor) as u64);

@@ -1,6 +1,6 @@
 //! Lights that have a size against the reference: their volumes, rays to them, and the floor below.
 
-use chiaroscuro::gpu::{Renderer, ShaderLibrary};
+use chiaroscuro::gpu::Renderer;
 use chiaroscuro::model::{
     Engine, Hood, Light, LightKind, LightShape, LightStorage, NearField, Resolution, Settings,
     ShadowAlgorithm,
@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::mutations::{disagree_in, in_shader};
 use super::{SIZE, check_volume};
-use crate::common::{Dataset, context, render};
+use crate::common::{Dataset, context, damaged, render};
 use crate::compare::{Limit, compare, flat32, flat64};
 use crate::scenes;
 use crate::thresholds::{COMBINED_NORMALS, SAME_WEIGHTS};
@@ -136,9 +136,7 @@ fn mistakes_in_them_are_noticed() {
 /// Whether the picture of a damaged shader is another than the reference's.
 fn pictures_differ(settings: &Settings, from: &str, to: &str) -> bool {
     let loaded = Dataset::new(scenes::creature(N, DVec3::ONE));
-    let context = context();
-    let shaders = ShaderLibrary::with_mutation(&context, from, to);
-    let mut renderer = Renderer::with_shaders(&context, shaders).expect("a renderer");
+    let mut renderer = damaged(from, to);
     let expected = Reference::new(loaded.volume(), settings, Options::default()).picture(SIZE, &[]);
     let found = render(&mut renderer, &loaded, settings, SIZE);
     compare("picture", &flat32(&found.light), &flat64(&expected), SAME_WEIGHTS).is_err()

@@ -1,7 +1,6 @@
 //! Light that bounces against the reference: the volume of it, and pictures.
 
 use chiaroscuro::data::{Dataset, Volume};
-use chiaroscuro::gpu::{Renderer, ShaderLibrary};
 use chiaroscuro::model::{
     Classification, CropBox, CutEffect, Engine, Hood, Light, LightKind, LightShape, Resolution, Scattering,
     Settings, ShadowAlgorithm, Sides, Sky, SkyMode,
@@ -13,7 +12,7 @@ use glam::DVec3;
 use super::check_volume;
 use super::mutations::in_shader;
 use super::presence::{two_lobes, waves};
-use crate::common::context;
+use crate::common::damaged;
 use crate::compare::{compare, flat32};
 use crate::scenes;
 use crate::thresholds::{LIGHT_BY_WALKS, SAME_BOUNCED};
@@ -80,9 +79,7 @@ fn light(volume: &Volume, settings: &Settings) -> Vec<f64> {
 
 /// The same of a renderer whose shaders have another text in place of one.
 fn damaged_light((from, to): (&str, &str), volume: &Volume, settings: &Settings) -> Vec<f64> {
-    let context = context();
-    let shaders = ShaderLibrary::with_mutation(&context, from, to);
-    let mut renderer = Renderer::with_shaders(&context, shaders).expect("a renderer");
+    let mut renderer = damaged(from, to);
     flat32(&renderer.bounced(&Dataset::new(volume.clone()), settings).expect("light is read back"))
 }
 

@@ -1,6 +1,6 @@
 //! Coloured shadows against the reference: each colour of light is followed by itself, on both sides.
 
-use chiaroscuro::gpu::{Attenuation, RenderOptions, Renderer, ShaderLibrary};
+use chiaroscuro::gpu::{Attenuation, RenderOptions, Renderer};
 use chiaroscuro::model::{
     Classification, ControlPoint, Engine, Floor, Light, LightKind, LightShape, LightStorage, NearField,
     Precision, Settings, ShadowAlgorithm,
@@ -11,7 +11,7 @@ use glam::DVec3;
 
 use super::mutations::in_shader;
 use super::{SIZE, round_to_f16};
-use crate::common::{Dataset, context, render};
+use crate::common::{Dataset, context, damaged, render};
 use crate::compare::{Limit, compare, flat32, flat64};
 use crate::scenes;
 use crate::thresholds::{BYTES, COMBINED_NORMALS, SAME_WEIGHTS};
@@ -40,9 +40,7 @@ const RIGHT: (&str, &str) = ("\u{0}", "");
 /// How the volumes of lights, the picture and the floor differ from the reference's, with a text in shaders replaced.
 fn failures(settings: &Settings, (from, to): (&str, &str)) -> Vec<String> {
     let loaded = Dataset::new(scenes::creature(N, DVec3::new(1.0, 1.0, 1.3)));
-    let context = context();
-    let shaders = ShaderLibrary::with_mutation(&context, from, to);
-    let mut renderer = Renderer::with_shaders(&context, shaders).expect("a renderer");
+    let mut renderer = damaged(from, to);
     let references = [0, 1, 2].map(|color| {
         let options = Options { color: Some(color), rounding: Some(round_to_f16), ..Options::default() };
         Reference::new(loaded.volume(), settings, options)

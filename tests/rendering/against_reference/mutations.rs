@@ -1,7 +1,7 @@
 //! Deliberate mistakes in a shader or in the reference, each of which the comparison must notice.
 
 use chiaroscuro::data::Volume;
-use chiaroscuro::gpu::{Renderer, ShaderLibrary};
+use chiaroscuro::gpu::ShaderLibrary;
 use chiaroscuro::model::{
     Camera, ControlPoint, Engine, Gradients, Kernel, LightKind, Settings, ShadowAlgorithm, Slabs,
 };
@@ -9,7 +9,7 @@ use chiaroscuro::reference::{Fault, Options, Reference};
 use glam::DVec3;
 
 use super::presence::{thin_waves, two_lobes, waves};
-use crate::common::{Dataset, attenuation, context, render};
+use crate::common::{Dataset, attenuation, damaged, render};
 use crate::compare::{compare, flat32, flat64, wide};
 use crate::scenes;
 use crate::thresholds::SAME_WEIGHTS;
@@ -49,9 +49,7 @@ pub(super) fn disagree_in(settings: &Settings, n: usize, from: &str, to: &str, f
 /// The same of any volume.
 fn disagree_about(volume: Volume, settings: &Settings, from: &str, to: &str, fault: Fault) -> bool {
     let loaded = Dataset::new(volume);
-    let context = context();
-    let shaders = ShaderLibrary::with_mutation(&context, from, to);
-    let mut renderer = Renderer::with_shaders(&context, shaders).expect("a renderer");
+    let mut renderer = damaged(from, to);
     let rounding: fn(f32) -> f32 = |value| half::f16::from_f32(value).to_f32();
     let options = Options { fault, rounding: Some(rounding), ..Options::default() };
     let reference = Reference::new(loaded.volume(), settings, options);

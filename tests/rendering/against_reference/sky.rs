@@ -1,7 +1,7 @@
 //! Light from all around against the reference: what is open of the sky, and pictures under it.
 
 use chiaroscuro::data::{Dataset, Volume};
-use chiaroscuro::gpu::{Renderer, ShaderLibrary};
+use chiaroscuro::gpu::Renderer;
 use chiaroscuro::model::{
     Classification, CropBox, CutEffect, Engine, LightStorage, Resolution, Settings, ShadowAlgorithm, Sides,
     Sky, SkyMode,
@@ -12,7 +12,7 @@ use glam::DVec3;
 use super::check_volume;
 use super::mutations::in_shader;
 use super::presence::{two_lobes, waves};
-use crate::common::context;
+use crate::common::{context, damaged};
 use crate::compare::{compare, flat32};
 use crate::scenes;
 use crate::thresholds::SAME_OPENNESS;
@@ -119,9 +119,7 @@ fn mistakes_in_where_rays_are_followed_are_noticed() {
     ];
     for (shader, from, to) in mistakes {
         in_shader(shader, from);
-        let context = context();
-        let shaders = ShaderLibrary::with_mutation(&context, from, to);
-        let mut renderer = Renderer::with_shaders(&context, shaders).expect("a renderer");
+        let mut renderer = damaged(from, to);
         let found =
             renderer.openness(&Dataset::new(volume.clone()), &settings).expect("moments are read back");
         let found = flat32(&found);

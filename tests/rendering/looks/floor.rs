@@ -1,6 +1,6 @@
 //! The floor: against the reference, against closed forms, and under the picture.
 
-use chiaroscuro::gpu::{RenderOptions, Renderer, ShaderLibrary};
+use chiaroscuro::gpu::{RenderOptions, Renderer};
 use chiaroscuro::model::{
     Background, Camera, Deposit, Fit, Floor, Hood, Kernel, Length, LightKind, LightShape, ObjectTurn,
     Projection, Resolution, SceneAxis, Settings, ShadowAlgorithm, Sky, SkyMode, ToneMap, linear_from_srgb,
@@ -9,7 +9,7 @@ use chiaroscuro::reference::{Options, Reference};
 use glam::DVec3;
 
 use crate::against_reference::mutations::in_shader;
-use crate::common::{Dataset, context, render};
+use crate::common::{Dataset, context, damaged, render};
 use crate::compare::{Limit, compare};
 use crate::scenes::{self, linear_extinction, straight};
 use crate::thresholds::{
@@ -166,9 +166,7 @@ fn light_of_a_sky_ends_where_it_meets_the_floor() {
     settings.sky = Sky { mode: SkyMode::White, intensity: 0.9, directions: 14, ..Sky::default() };
     settings.lights.clear();
     let disagrees = |from: &str, to: &str| {
-        let context = context();
-        let shaders = ShaderLibrary::with_mutation(&context, from, to);
-        let mut renderer = Renderer::with_shaders(&context, shaders).expect("a renderer");
+        let mut renderer = damaged(from, to);
         let [found, expected] = seen(&mut renderer, SIZE, &loaded, [&settings; 2]);
         compare(to, &found, &expected, FLOOR_UNDER_A_SKY).is_err()
     };

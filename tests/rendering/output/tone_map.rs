@@ -4,7 +4,7 @@ use chiaroscuro::gpu::{Renderer, ShaderLibrary};
 use chiaroscuro::model::{Depth, ImageSpec, Settings, ToneMap};
 use glam::DVec3;
 
-use crate::common::{Dataset, context, render};
+use crate::common::{Dataset, context, damaged, render};
 use crate::compare::{Difference, Limit, compare};
 use crate::scenes;
 use crate::thresholds::{EIGHT_BITS, TONE_MAP};
@@ -117,9 +117,7 @@ fn other_tone_maps_are_noticed() {
         let source =
             ShaderLibrary::source("output/display_deep.wgsl", r16, r16).expect("the shader is there");
         assert!(source.contains(from), "the shader no longer contains {from:?}");
-        let context = context();
-        let shaders = ShaderLibrary::with_mutation(&context, from, to);
-        let renderer = Renderer::with_shaders(&context, shaders).expect("a renderer");
+        let renderer = damaged(from, to);
         assert!(check(renderer, ToneMap::Neutral, 1.2).is_err(), "{to} is not noticed");
     }
 }

@@ -5,11 +5,12 @@ use std::sync::Arc;
 use super::reach::{cells_around, least_reach, sample_reach};
 use crate::gpu::GpuError;
 use crate::gpu::bounces::build::BouncesBuild;
-use crate::gpu::bounces::volume::{BouncesVolume, divisor_on};
+use crate::gpu::bounces::volume::{BouncesVolume, MOST_TEXELS};
 use crate::gpu::frame::loaded::{Loaded, Wanted};
 use crate::gpu::frame::step::{Product, Step};
 use crate::gpu::resources::cached::Cached;
 use crate::gpu::resources::tools::Tools;
+use crate::gpu::sky::volume::divisor_on;
 use crate::gpu::volume::Gpu;
 use crate::plan::BouncesKey;
 
@@ -72,7 +73,7 @@ impl Loaded {
             return Ok(PlacedBounces { key: Some(key), slot: Some(slot), build: None });
         }
         let key = coarse.unwrap_or_else(|| full.clone());
-        let divisor = divisor_on(context, self.volume.volume.dims(), key.resolution());
+        let divisor = divisor_on(context, self.volume.volume.dims(), key.resolution(), MOST_TEXELS);
         // Previews look up what lies further on, too: next to nothing is seen there, and it has no light.
         let mut filled = cells(divisor, reach);
         // Two looks that are compared may show other things: one volume serves both.

@@ -9,7 +9,7 @@ use crate::gpu::frame::step::{Product, Step};
 use crate::gpu::resources::cached::Cached;
 use crate::gpu::resources::tools::Tools;
 use crate::gpu::sky::build::SkyBuild;
-use crate::gpu::sky::volume::{SkyVolume, divisor_on};
+use crate::gpu::sky::volume::{MOST_TEXELS, SkyVolume, divisor_on};
 use crate::gpu::volume::Gpu;
 use crate::plan::{FloorPlace, SkyKey};
 
@@ -78,7 +78,7 @@ impl Loaded {
             return Ok(PlacedSky { key: Some(key), slot: Some(slot), build: None });
         }
         let key = coarse.unwrap_or_else(|| full.clone());
-        let divisor = divisor_on(context, self.volume.volume.dims(), key.resolution());
+        let divisor = divisor_on(context, self.volume.volume.dims(), key.resolution(), MOST_TEXELS);
         let mut filled = cells(divisor, reach);
         let mut margin = cells(divisor, reach.max(widest())).without(&filled);
         // Two looks that are compared may show other things: one volume serves both.
