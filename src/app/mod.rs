@@ -252,6 +252,11 @@ impl App {
         self.messages.latest_note()
     }
 
+    /// Whether a note lies over the picture, which goes by itself after some seconds.
+    pub fn shows_note(&self) -> bool {
+        self.messages.shows_note()
+    }
+
     /// Exports the picture as the export window does.
     pub fn export(&mut self, path: &Path, size: [u32; 2], ctx: &egui::Context) {
         self.export.set_size(size);

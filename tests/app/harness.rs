@@ -120,12 +120,13 @@ pub(crate) fn press(harness: &mut Harness<'_, App>, at: Pos2, times: usize) {
     }
 }
 
-/// The bytes of the picture in the window, and its size.
+/// Bytes and size of the picture in the window, without anything over it that goes by itself.
 pub(crate) fn picture(harness: &mut Harness<'_, App>) -> (Vec<u8>, [u32; 2]) {
     // Handles fade out when the pointer is gone.
     harness.remove_cursor();
     harness.run_steps(12);
-    wait_until_idle(harness);
+    // How many frames pass until the picture is there depends on the machine; a note lasts for some seconds of them.
+    wait_until(harness, "a note stays", |app| app.is_idle() && !app.shows_note());
     let (rect, size) = harness.state().viewport_rect().expect("a picture");
     let image = harness.render().expect("a picture of the window");
     let (x, y) = (rect.min.x.round() as u32, rect.min.y.round() as u32);

@@ -113,6 +113,11 @@ impl Messages {
         self.note.as_deref()
     }
 
+    /// Whether a note lies over the picture, which goes by itself.
+    pub(crate) fn shows_note(&self) -> bool {
+        self.current.as_ref().is_some_and(|message| !message.is_error)
+    }
+
     /// How many messages there have been.
     pub(crate) fn count(&self) -> usize {
         self.past.len()
