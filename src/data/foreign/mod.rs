@@ -1,7 +1,10 @@
-//! What others wrote: text made harmless, and small files.
+//! What others wrote: text made harmless, XML that is parsed in bounded time, and small files.
 
 mod small_file;
 mod text;
+pub(crate) mod xml;
 
+pub(crate) use small_file::read_bounded;
 pub use small_file::read_small;
-pub use text::{fingerprint, plain, single_line, without_controls};
+pub use text::{fingerprint, one_line, plain, single_line, without_controls};
+pub use xml::XmlError;

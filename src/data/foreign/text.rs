@@ -20,6 +20,19 @@ pub fn without_controls(text: &str) -> String {
     text.chars().map(|c| if c != '\n' && is_odd(c) { '·' } else { c }).collect()
 }
 
+/// Text that may hold words from outside, as one line for a terminal: its lines follow each other, and other control
+/// characters become `·`.
+pub fn one_line(text: &str) -> String {
+    let mut line = String::new();
+    for part in text.lines().map(str::trim).filter(|part| !part.is_empty()) {
+        if !line.is_empty() && !part.starts_with([',', ';', '.', ':', ')']) {
+            line.push(' ');
+        }
+        line.push_str(part);
+    }
+    without_controls(&line)
+}
+
 /// A number made from all of a text, the same in every version and on every machine: FNV-1a of 64 bits
 /// (<https://datatracker.ietf.org/doc/html/rfc9923>).
 pub fn fingerprint(text: &str) -> u64 {
@@ -45,6 +58,8 @@ mod tests {
         assert_eq!(plain("abcdef", 3), "abc…");
         assert_eq!(plain("abc", 3), "abc");
         assert_eq!(plain("a\u{202e}b", 9), "a·b");
+        assert_eq!(one_line("found 0\n; expected\r\n  a\u{1b}[2J\n\n"), "found 0; expected a·[2J");
+        assert_eq!((one_line("a: b"), one_line("\n")), ("a: b".to_owned(), String::new()));
         assert_eq!(single_line("a\u{202e}\u{1b}[2J\nb\u{2069}cd", 6), "a[2Jbc");
     }
 }

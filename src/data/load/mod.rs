@@ -18,7 +18,7 @@ use std::sync::Arc;
 pub use formats::{RawFormat, RawGuess, RawLayout, endings, raw};
 
 use super::Volume;
-#[cfg(feature = "window")]
+#[cfg(any(feature = "window", feature = "cli"))]
 pub(crate) use super::attempt::human_bytes;
 pub(crate) use super::attempt::memory_budget_bytes;
 pub use super::attempt::{

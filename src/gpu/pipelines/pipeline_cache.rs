@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::data::read_bounded;
 use crate::export::{ExportError, make_folder, write_atomically};
 use crate::gpu::Context;
 
@@ -53,10 +54,7 @@ impl PipelineCache {
 
 /// The bytes of a file that `save` has written; `None` if it was not, or is damaged.
 fn read(path: &Path) -> Option<Vec<u8>> {
-    if std::fs::metadata(path).ok()?.len() > MOST_BYTES {
-        return None;
-    }
-    let mut bytes = std::fs::read(path).ok()?;
+    let mut bytes = read_bounded(path, MOST_BYTES).ok()??;
     let (stated, data) = bytes.split_first_chunk::<8>()?;
     if u64::from_le_bytes(*stated) != sum(data) {
         log::warn!("{} is damaged: pipelines are made anew", path.display());
@@ -96,6 +94,21 @@ mod tests {
             std::fs::write(&path, &damaged).expect("written");
             assert_eq!(read(&path), None, "byte {at}");
         }
+        // A file without an end, and one that is longer than any cache.
+        #[cfg(target_os = "linux")]
+        {
+            let link = folder.path().join("link");
+            std::os::unix::fs::symlink("/dev/zero", &link).expect("a link");
+            assert_eq!(read(&link), None);
+            let pipe = folder.path().join("pipe");
+            let made = std::process::Command::new("mkfifo").arg(&pipe).status().expect("mkfifo");
+            assert!(made.success());
+            assert_eq!(read(&pipe), None);
+        }
+        std::fs::File::create(folder.path().join("long"))
+            .and_then(|file| file.set_len(MOST_BYTES + 1))
+            .expect("made");
+        assert_eq!(read(&folder.path().join("long")), None);
         for short in [0, 7, 8, whole.len() - 1] {
             std::fs::write(&path, &whole[..short]).expect("written");
             assert_eq!(read(&path), None, "{short} bytes");

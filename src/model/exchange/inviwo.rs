@@ -3,15 +3,15 @@
 
 use std::fmt::Write as _;
 
-use roxmltree::{Document, Node};
+use roxmltree::Node;
 
 use super::{ExchangeError, form, rgb};
-use crate::data::ValueRange;
+use crate::data::{ValueRange, xml};
 use crate::model::{ControlPoint, TransferFunction};
 
 /// Reads points of either kind.
 pub(crate) fn from_itf(text: &str, range: ValueRange) -> Result<TransferFunction, ExchangeError> {
-    let document = Document::parse(text)?;
+    let document = xml::parse(text)?;
     let mut points = Vec::new();
     for point in document.descendants().filter(|node| node.tag_name().name().eq_ignore_ascii_case("point")) {
         let child = |name: &str| {

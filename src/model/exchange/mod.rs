@@ -17,7 +17,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::data::ValueRange;
+use crate::data::{ValueRange, XmlError};
 use crate::model::{ControlPoint, Easing, Interpolation, MAX_POINTS, Mixing, STEPS, TransferFunction};
 
 /// Endings of the files that [`import`] reads.
@@ -44,9 +44,9 @@ pub enum ExchangeError {
     /// Not JSON.
     #[error("not valid JSON: {0}")]
     Syntax(#[from] serde_json::Error),
-    /// Not XML.
-    #[error("not valid XML: {0}")]
-    Xml(#[from] roxmltree::Error),
+    /// XML that is broken, or that would take long to read.
+    #[error("{0}; a file that Inviwo (.itf) or Voreen (.tfi) has written helps")]
+    Xml(#[from] XmlError),
     /// Something else than it should be.
     #[error(
         "{0}; a file that ParaView or AGAVE (.json), Slicer (.vp, .vp.json), Inviwo (.itf), Voreen (.tfi), MRIcroGL (.clut) or ImageJ (.lut) has written helps"

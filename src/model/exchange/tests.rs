@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::*;
 use crate::data::ValueRanges;
+use crate::data::xml::tests::slow_texts;
 use crate::model::{Interpolation, Preset, Settings};
 
 const RANGE: ValueRange = ValueRange::new(-1000.0, 1000.0);
@@ -184,6 +185,16 @@ fn numbers_without_end_are_refused() {
 fn a_comma_too_many_is_forgiven() {
     let text = b"[{\"RGBPoints\": [2, 0, 0, 0, 4, 1, 1, 1]},\n]\n";
     assert_eq!(read("a.json", text).unwrap().points.len(), 2);
+}
+
+#[test]
+fn xml_that_would_take_long_is_refused() {
+    for (words, text) in slow_texts("InviwoTransferFunction") {
+        for name in ["a.itf", "a.tfi"] {
+            let error = read(name, text.as_bytes()).unwrap_err();
+            assert!(error.contains(words) && error.lines().count() == 1, "{name}: {error}");
+        }
+    }
 }
 
 #[test]

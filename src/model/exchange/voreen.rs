@@ -1,16 +1,16 @@
 //! Voreen's transfer functions (`.tfi`, XML): keys at shares of a domain, with colours as bytes to their left
 //! and to their right, which differ where the key is split.
 
-use roxmltree::{Document, Node};
+use roxmltree::Node;
 
 use super::inviwo::number;
 use super::{ExchangeError, form, rgb};
-use crate::data::ValueRange;
+use crate::data::{ValueRange, xml};
 use crate::model::{ControlPoint, TransferFunction};
 
 /// Reads the keys between the thresholds.
 pub(crate) fn from_tfi(text: &str, range: ValueRange) -> Result<TransferFunction, ExchangeError> {
-    let document = Document::parse(text)?;
+    let document = xml::parse(text)?;
     let function = document.descendants().find(|node| node.tag_name().name().starts_with("TransFunc"));
     let function = function.ok_or_else(|| form("there is no TransFuncIntensity in the file"))?;
     let child = |parent: Node<'_, '_>, name: &str| {

@@ -1,6 +1,6 @@
 //! IVF, Inviwo's volumes: a description in XML.
 
-use roxmltree::{Document, Node};
+use roxmltree::Node;
 
 use super::super::super::LoadError;
 use super::super::super::placement::Placement;
@@ -8,6 +8,7 @@ use super::super::form::Form;
 use super::Described;
 use super::words::{bad, missing, number, order};
 use crate::data::attempt::Attempt;
+use crate::data::xml;
 
 /// Whether a file that begins like this is a description.
 pub(super) fn is_ivf(start: &[u8]) -> bool {
@@ -16,10 +17,8 @@ pub(super) fn is_ivf(start: &[u8]) -> bool {
 }
 
 pub(super) fn parse(attempt: Attempt<'_>, text: &str) -> Result<Described, LoadError> {
-    let document = Document::parse(text.trim_start_matches('\u{feff}')).map_err(|error| {
-        let why = crate::data::plain(&format!("it is not valid: {error}"), 200);
-        attempt.bad_input("XML", why, "copy the description again")
-    })?;
+    let document = xml::parse(text)
+        .map_err(|error| attempt.bad_input("XML", error.to_string(), "copy the description again"))?;
     let node = |name: &str| document.descendants().find(|node| node.has_tag_name(name));
     let content = |name: &str| node(name).and_then(|node| node.attribute("content")).map(str::trim);
     let data = content("RawFile").ok_or_else(|| missing(attempt, "RawFile"))?;

@@ -7,6 +7,7 @@ use tempfile::TempDir;
 
 use super::*;
 use crate::data::load::{Choice, LoadControl, LoadErrorKind, LoadOptions, RawFormat, load as load_file};
+use crate::data::xml::tests::{many_attributes, nested_namespaces};
 use crate::data::{Modality, Samples, VoxelType};
 
 const DAT: &str = "ObjectFileName:\tfoot.raw\nTaggedFileName:\t---\nResolution:\t2 3 2\nSliceThickness:\t 0.5 0.5 2 \n\
@@ -174,4 +175,19 @@ fn descriptions_that_lie_are_refused() {
     folder.write("foot.ini", INI.replace("uint8", "?"));
     let error = folder.load("foot.raw", plain()).unwrap_err();
     assert!(error.to_string().contains("foot.ini"), "nothing else says what it is: {error}");
+}
+
+#[test]
+fn xml_that_would_take_long_is_refused() {
+    let folder = Folder::new("foot.raw");
+    // As much as a description may have, with what makes it one for who looks at its beginning alone.
+    let namespaces = nested_namespaces("InviwoVolume", 1500);
+    let attributes = many_attributes("InviwoVolume", 7000).replacen("<", "<?x <!-- <RawFile ?><", 1);
+    folder.write("a.ivf", format!("<!-- <RawFile -->{namespaces}"));
+    let error = folder.load("a.ivf", plain()).unwrap_err();
+    assert_eq!(error.kind(), LoadErrorKind::BadInput);
+    assert!(error.to_string().contains("1501 namespaces"), "{error}");
+    // These take 0.1 s.
+    folder.write("a.ivf", attributes);
+    assert!(folder.load("a.ivf", plain()).unwrap_err().to_string().contains("RawFile"));
 }

@@ -12,7 +12,7 @@ mod tests;
 use std::io::Read;
 
 use glam::{DMat3, DVec3};
-use roxmltree::{Document, Node, ParsingOptions};
+use roxmltree::Node;
 
 use super::super::number::Number;
 use super::super::reader::{Source, Start};
@@ -24,13 +24,10 @@ use super::image::{
     Array, Chosen, Grid, MOST_ARRAYS, MOST_COMPONENTS, broken, check_room, choose, content_from,
 };
 use crate::data::attempt::{Attempt, human_bytes, quoted};
-use crate::data::{Volume, plain};
+use crate::data::{Volume, plain, xml};
 use base64::{Base64, most_bytes};
 use blocks::{Blocks, Compressor, Words, check_length};
 use skeleton::Skeleton;
-
-/// Elements, attributes aside: far more than arrays that are read.
-const MOST_NODES: u32 = 1 << 17;
 
 /// Arrays with which VTK marks what is missing or doubled; nobody wants to see them.
 const MARKS: [&str; 2] = ["vtkGhostType", "vtkValidPointMask"];
@@ -67,10 +64,8 @@ pub(super) fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
     let attempt = Attempt { what: "read the VTK image", path: source.path };
     let control = source.control;
     let skeleton = Skeleton::read(attempt, &mut content_from(attempt, &mut source, 0)?, control)?;
-    let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
-    let document = Document::parse_with_options(&skeleton.markup, options).map_err(|error| {
-        attempt.bad_input("markup", format!("it is no XML: {error}"), "copy the file again")
-    })?;
+    let document = xml::parse(&skeleton.markup)
+        .map_err(|error| attempt.bad_input("markup", error.to_string(), "copy the file again"))?;
     let root = document.root_element();
     let piece = image(attempt, root)?;
     let grid = grid(attempt, piece)?;

@@ -8,6 +8,7 @@ use glam::DVec3;
 
 use crate::data::load::tests::shared::{self, assert_refused, zlib};
 use crate::data::load::{Choice, Dimension, Endian, LoadError, LoadErrorKind};
+use crate::data::xml::tests::{many_attributes, nested_namespaces, slow_texts};
 use crate::data::{Samples, Volume};
 
 const VOXELS: [u8; 8] = [1, 2, 3, 4, 5, 6, 7, 8];
@@ -343,4 +344,29 @@ fn blocks_are_counted_with_the_volume() {
     assert_eq!(*read(32 << 10).unwrap().samples(), Samples::U8(vec![7; 600_000]));
     // Of the budget of 1 MiB 586 KiB are the volume.
     assert_refused(read(600_000), LoadErrorKind::Limit, &["compressed block", "1.1 MiB", "smaller blocks"]);
+}
+
+#[test]
+fn xml_that_would_take_long_is_refused() {
+    // Alone, and inside an image that is whole otherwise.
+    let both = |text: &str| {
+        let arrays = points("type=\"UInt8\" format=\"ascii\"", "1 2 3 4 5 6 7 8") + text;
+        [text.as_bytes().to_vec(), file("", &arrays, b"")]
+    };
+    for (_, text) in slow_texts("VTKFile") {
+        for bytes in both(&text) {
+            // Deep elements and long marks are refused while the file is read.
+            let said = load_bytes(&bytes).unwrap_err().to_string();
+            assert!(
+                ["1 MiB", "deep", "attributes and namespaces"].iter().any(|why| said.contains(why)),
+                "{said}"
+            );
+        }
+    }
+    let texts = [nested_namespaces("VTKFile", 4000), many_attributes("VTKFile", 40_000)];
+    for (text, words) in texts.iter().zip(["4001 namespaces", "40000 attributes"]) {
+        for bytes in both(text) {
+            assert_refused(load_bytes(&bytes), LoadErrorKind::BadInput, &["markup", words]);
+        }
+    }
 }

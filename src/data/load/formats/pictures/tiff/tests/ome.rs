@@ -4,6 +4,7 @@ use super::writer::{LITTLE, Leaf};
 use super::{assert_refused, load_bytes, load_chosen, load_with};
 use crate::data::load::formats::pictures::tiff::file::page::tag;
 use crate::data::load::{Choice, LoadErrorKind};
+use crate::data::xml::tests::slow_texts;
 use crate::data::{Modality, Volume};
 
 fn page(value: u8) -> Leaf {
@@ -130,7 +131,7 @@ fn lies_are_told() {
     let pixels = "DimensionOrder=\"XYZCT\" SizeZ=\"3\" SizeC=\"1\" SizeT=\"1\"";
     for (xml, words) in [
         (document(""), "no image"),
-        ("<OME><Image></OME>".to_owned(), "OME-XML is broken"),
+        ("<OME><Image></OME>".to_owned(), "it is no XML"),
         (document(&image("a", "SizeZ=\"0\" SizeC=\"1\" SizeT=\"1\"", "")), "no size"),
         (document(&image("a", "SizeZ=\"9999999\" SizeC=\"1\" SizeT=\"1\"", "")), "9999999 slices"),
         (document(&image("a", "SizeZ=\"1\" SizeC=\"9999\" SizeT=\"9999\"", "")), "cannot be"),
@@ -143,8 +144,36 @@ fn lies_are_told() {
             ),
             "pages of 3 x 1",
         ),
-        ("<!DOCTYPE OME [<!ENTITY a \"b\">]><OME>&a;</OME>".to_owned(), "OME-XML is broken"),
+        ("<!DOCTYPE OME [<!ENTITY a \"b\">]><OME>&a;</OME>".to_owned(), "document type"),
     ] {
         assert_refused(load_bytes(&file(&xml, 2)), LoadErrorKind::BadInput, &[words]);
+    }
+}
+
+#[test]
+fn xml_that_would_take_long_is_refused() {
+    for (words, xml) in slow_texts("OME") {
+        assert_refused(load_bytes(&file(&xml, 2)), LoadErrorKind::BadInput, &["OME-XML", words]);
+    }
+}
+
+#[test]
+fn a_recording_of_many_planes_is_read() {
+    // Each plane with all that the schema knows of it.
+    let planes: String = (0..20_000)
+        .map(|at| {
+            format!(
+                "<TiffData FirstC=\"0\" FirstT=\"{at}\" FirstZ=\"0\" IFD=\"{}\" PlaneCount=\"1\"/><Plane TheC=\"0\" TheT=\"{at}\" \
+                 TheZ=\"0\" DeltaT=\"{at}\" DeltaTUnit=\"s\" ExposureTime=\"1\" ExposureTimeUnit=\"s\" PositionX=\"1\" \
+                 PositionXUnit=\"µm\" PositionY=\"1\" PositionYUnit=\"µm\" PositionZ=\"1\" PositionZUnit=\"µm\"/>",
+                at % 2
+            )
+        })
+        .collect();
+    let sizes = "DimensionOrder=\"XYZCT\" SizeZ=\"1\" SizeC=\"1\" SizeT=\"20000\"";
+    let bytes = file(&document(&image("a", sizes, &planes)), 2);
+    for (frame, value) in [(0, 0.0), (1, 1.0), (19_998, 0.0), (19_999, 1.0)] {
+        let choice = Choice { frame: Some(frame), ..Choice::default() };
+        assert_eq!(firsts(&load_chosen(&bytes, choice).unwrap()), [value], "{frame}");
     }
 }

@@ -18,14 +18,11 @@ use crate::data::attempt::{Attempt, quoted};
 use crate::data::load::reading::beside;
 use crate::data::load::reading::placement::Placement;
 use crate::data::load::{Choice, Dimension, LoadError, Offer};
-use crate::data::{Hints, Modality, plain};
+use crate::data::{Hints, Modality, plain, xml};
 use pages::Pages;
 
 /// Bytes of XML that are read at most: of ten thousand files it has a few million.
-pub(in super::super) const MOST_XML_BYTES: u64 = 64 << 20;
-
-/// Most elements and texts of it.
-const MOST_NODES: u32 = 4 << 20;
+pub(in super::super) const MOST_XML_BYTES: u64 = xml::MOST_BYTES as u64;
 
 /// Whether a description is OME's XML.
 pub(in super::super) fn is_ome(description: &str) -> bool {
@@ -35,11 +32,8 @@ pub(in super::super) fn is_ome(description: &str) -> bool {
         && (head.contains("<OME") || head.contains(":OME"))
 }
 
-fn parsed<'a>(attempt: Attempt<'_>, xml: &'a str) -> Result<Document<'a>, LoadError> {
-    let options = roxmltree::ParsingOptions { nodes_limit: MOST_NODES, ..Default::default() };
-    Document::parse_with_options(xml.trim_start_matches('\u{feff}'), options).map_err(|error| {
-        attempt.bad_input("description", plain(&format!("its OME-XML is broken: {error}"), 200), HELP)
-    })
+fn parsed<'a>(attempt: Attempt<'_>, text: &'a str) -> Result<Document<'a>, LoadError> {
+    xml::parse(text).map_err(|error| attempt.bad_input("OME-XML", error.to_string(), HELP))
 }
 
 fn child<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
