@@ -5,8 +5,7 @@ use std::io::{self, BufReader, Read as _, Seek as _, SeekFrom};
 use std::path::Path;
 use std::sync::Arc;
 
-use flate2::bufread::MultiGzDecoder;
-
+use super::super::content::members::GzipMembers;
 use super::super::input::is_gzip;
 
 /// Bytes of a compressed file that are inflated: at about 300 MB/s they take a tenth of a second, and they hold 100
@@ -70,7 +69,7 @@ impl RawBytes {
         read_full(&mut file, &mut said)?;
         file.seek(SeekFrom::Start(0))?;
         let mut start = Vec::new();
-        let mut inflated = MultiGzDecoder::new(BufReader::with_capacity(1 << 18, file)).take(INFLATED);
+        let mut inflated = GzipMembers::new(BufReader::with_capacity(1 << 18, file)).take(INFLATED);
         // What comes before damage can be shown all the same.
         let is_whole = inflated.read_to_end(&mut start).is_ok() && (start.len() as u64) < INFLATED;
         let readable = start.len() as u64;
