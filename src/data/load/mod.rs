@@ -88,6 +88,7 @@ pub fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result
         // Whatever became of it.
         control.check()?;
         let volume = volume?;
+        Attempt { what: "open the volume", path }.refuse_unasked(&options.choice, &watch)?;
         let volume = volume.with_held(Held { portion, ..watch.held() });
         Ok::<_, LoadError>((watch.has_averaged() && volume.is_of_labels(), volume))
     };

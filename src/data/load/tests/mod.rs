@@ -1,6 +1,7 @@
 //! RAW files and dispatch, from the outside: what is read and what is refused.
 
 mod cancelling;
+mod choices;
 mod portions;
 pub(super) mod shared;
 
