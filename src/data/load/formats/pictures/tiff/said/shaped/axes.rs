@@ -1,0 +1,176 @@
+//! What the axes of an array stand for that lie before those of a page: slices, channels, time steps, or series.
+
+use super::super::super::file::directory::MOST_PAGES;
+use super::super::super::file::page::Page;
+
+/// An axis of an array.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Axis {
+    size: u64,
+    /// The letter of tifffile's `axes` (<https://www.cgohlke.com>, `TIFF.AXES_CODES`).
+    letter: char,
+}
+
+/// An axis of pages, and how many pages one step along it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Stride {
+    pub(super) size: usize,
+    pub(super) pages: usize,
+}
+
+/// Axes of pages by what they stand for.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(super) struct Axes {
+    pub(super) slices: Option<Stride>,
+    pub(super) channels: Option<Stride>,
+    pub(super) frames: Option<Stride>,
+    /// The others, the slowest first.
+    pub(super) series: Vec<Stride>,
+    /// Whether nothing was said of what they stand for, and there are several.
+    pub(super) is_assumed: bool,
+    /// Pages of all of them.
+    pub(super) pages: usize,
+}
+
+impl Axes {
+    /// The axes of an array whose last ones are those of a page. `None` where a page is no such part of it, or where there
+    /// would be more pages than any file has.
+    pub(super) fn new(shape: &[u64], letters: &str, page: &Page) -> Option<Self> {
+        let letters: Vec<char> = letters.chars().map(|letter| letter.to_ascii_uppercase()).collect();
+        let is_named = letters.len() == shape.len();
+        let letter = |at: usize| if is_named { letters[at] } else { '?' };
+        let samples = page.samples as u64;
+        let of_page = if page.is_planar {
+            [(samples, 'S'), (page.height, 'Y'), (page.width, 'X')]
+        } else {
+            [(page.height, 'Y'), (page.width, 'X'), (samples, 'S')]
+        };
+        // Axes of one step are there or not, as a program likes.
+        let all: Vec<Axis> = (0..shape.len())
+            .map(|at| Axis { size: shape[at], letter: letter(at) })
+            .filter(|axis| axis.size != 1)
+            .collect();
+        let of_page: Vec<(u64, char)> = of_page.into_iter().filter(|&(size, _)| size != 1).collect();
+        let outer = all.len().checked_sub(of_page.len())?;
+        let (outer, inner) = all.split_at(outer);
+        let is_same = inner.iter().zip(&of_page).all(|(axis, &(size, letter))| {
+            // What several detectors have seen may be the samples of a page.
+            let is_meant =
+                axis.letter == letter || axis.letter == '?' || (axis.letter == 'C' && letter == 'S');
+            axis.size == size && is_meant
+        });
+        if is_same { Self::of_pages(outer) } else { None }
+    }
+
+    /// The axes of so many pages, the slowest first.
+    fn of_pages(outer: &[Axis]) -> Option<Self> {
+        let mut axes = Self { pages: 1, ..Self::default() };
+        let mut strides = Vec::new();
+        for axis in outer.iter().rev() {
+            let size = usize::try_from(axis.size).ok().filter(|&size| size > 0)?;
+            strides.push(Stride { size, pages: axes.pages });
+            axes.pages = axes.pages.checked_mul(size).filter(|&pages| pages <= MOST_PAGES)?;
+        }
+        strides.reverse();
+        let mut letters: Vec<char> = outer.iter().map(|axis| axis.letter).collect();
+        if letters.iter().all(|&letter| letter == '?') {
+            axes.is_assumed = letters.len() > 1;
+            // As arrays of NumPy are taken: time, channel, z.
+            for (letter, assumed) in
+                letters.iter_mut().rev().zip(['Z', if outer.len() > 2 { 'C' } else { 'T' }, 'T'])
+            {
+                *letter = assumed;
+            }
+        }
+        let slices = slice_axis(&letters);
+        for (at, (&letter, &stride)) in letters.iter().zip(&strides).enumerate() {
+            let place = match letter {
+                _ if Some(at) == slices => &mut axes.slices,
+                'C' => &mut axes.channels,
+                'T' => &mut axes.frames,
+                // Wavelengths of excitation and emission, lifetimes, exposures.
+                'E' | 'W' | 'H' | 'L' if !letters.contains(&'C') => &mut axes.channels,
+                _ => {
+                    axes.series.push(stride);
+                    continue;
+                }
+            };
+            if place.is_none() { *place = Some(stride) } else { axes.series.push(stride) }
+        }
+        Some(axes)
+    }
+
+    /// How many series there are.
+    pub(super) fn series_count(&self) -> usize {
+        self.series.iter().map(|stride| stride.size).product()
+    }
+
+    /// The first page of a series.
+    pub(super) fn series_page(&self, series: usize) -> usize {
+        let mut rest = series;
+        let mut page = 0;
+        for stride in self.series.iter().rev() {
+            page += rest % stride.size * stride.pages;
+            rest /= stride.size;
+        }
+        page
+    }
+}
+
+/// The axis along which slices follow each other: that of depth, or else the fastest of which it is not said that it is
+/// another one; of channels and times none.
+fn slice_axis(letters: &[char]) -> Option<usize> {
+    let is_other = |letter: char| matches!(letter, 'C' | 'T' | 'E' | 'W' | 'H' | 'L' | 'S');
+    let last = |is: &dyn Fn(char) -> bool| letters.iter().rposition(|&letter| is(letter));
+    last(&|letter| letter == 'Z')
+        .or_else(|| last(&|letter| matches!(letter, 'Q' | 'I' | 'D' | '?')))
+        .or_else(|| last(&|letter| !is_other(letter)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(letters: &str) -> String {
+        let outer: Vec<Axis> =
+            letters.chars().enumerate().map(|(at, letter)| Axis { size: at as u64 + 2, letter }).collect();
+        let axes = Axes::of_pages(&outer).unwrap();
+        let size = |stride: Option<Stride>| stride.map_or(0, |stride| stride.size);
+        let series: Vec<usize> = axes.series.iter().map(|stride| stride.size).collect();
+        format!("z{} c{} t{} s{series:?}", size(axes.slices), size(axes.channels), size(axes.frames))
+    }
+
+    #[test]
+    fn letters_say_what_axes_stand_for() {
+        for (letters, expected) in [
+            ("", "z0 c0 t0 s[]"),
+            ("Z", "z2 c0 t0 s[]"),
+            ("?", "z2 c0 t0 s[]"),
+            ("??", "z3 c0 t2 s[]"),
+            ("???", "z4 c3 t2 s[]"),
+            ("????", "z5 c4 t3 s[2]"),
+            ("CZ", "z3 c2 t0 s[]"),
+            ("ZC", "z2 c3 t0 s[]"),
+            ("TCZ", "z4 c3 t2 s[]"),
+            ("TZC", "z3 c4 t2 s[]"),
+            ("T", "z0 c0 t2 s[]"),
+            ("TC", "z0 c3 t2 s[]"),
+            ("A", "z2 c0 t0 s[]"),
+            ("RZ", "z3 c0 t0 s[2]"),
+            ("TQ", "z3 c0 t2 s[]"),
+            ("QQ", "z3 c0 t0 s[2]"),
+            ("EZ", "z3 c2 t0 s[]"),
+            ("ECZ", "z4 c3 t0 s[2]"),
+        ] {
+            assert_eq!(of(letters), expected, "{letters}");
+        }
+    }
+
+    #[test]
+    fn pages_of_series_are_counted_along_their_axes() {
+        let stride = |size, pages| Stride { size, pages };
+        let axes = Axes { series: vec![stride(2, 100), stride(3, 5)], ..Axes::default() };
+        assert_eq!(axes.series_count(), 6);
+        assert_eq!((0..6).map(|at| axes.series_page(at)).collect::<Vec<_>>(), [0, 5, 10, 100, 105, 110]);
+    }
+}
