@@ -51,7 +51,7 @@ impl Choice {
         }
     }
 
-    /// What is said of an aspect, as [`Self::said`].
+    /// Text that is said of an aspect, as [`Self::said`].
     pub(super) fn said_of(&self, aspect: Aspect) -> Option<String> {
         match aspect {
             Aspect::Of(dimension) => self.said(dimension),

@@ -166,7 +166,7 @@ impl Attempt<'_> {
     ///
     /// # Errors
     /// `BadInput` with what there is to choose from, unless the first is meant where what is said is not there.
-    pub(in crate::data) fn refuse_unasked(&self, choice: &Choice, watch: &Watch) -> Result<(), LoadError> {
+    pub(crate) fn refuse_unasked(&self, choice: &Choice, watch: &Watch) -> Result<(), LoadError> {
         let is_unasked = |aspect: Aspect| {
             let said = choice.said_of(aspect).filter(|said| said != "0")?;
             (!watch.was_asked(aspect)).then_some((aspect, said))

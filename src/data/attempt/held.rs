@@ -117,7 +117,7 @@ pub struct Watch(Arc<Mutex<Seen>>);
 struct Seen {
     held: Held,
     is_averaged: bool,
-    /// What a reader has asked the choice for, whether there were several or one.
+    /// Aspects that a reader has asked the choice for, of several volumes or of one.
     asked: Vec<Aspect>,
 }
 
@@ -141,7 +141,7 @@ impl Watch {
         self.seen().is_averaged
     }
 
-    /// Whether a reader has asked which of them is meant.
+    /// True where a reader has asked which of them is meant.
     pub(super) fn was_asked(&self, aspect: Aspect) -> bool {
         self.seen().asked.contains(&aspect)
     }

@@ -75,7 +75,7 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Whether a file, without links in its path, lies where git-annex (`DataLad`) or DVC keep the files of a repository that a
+/// True where a file, without links in its path, lies where git-annex (`DataLad`) or DVC keep the files of a repository that a
 /// folder is in.
 ///
 /// See <https://git-annex.branchable.com/internals/> and <https://dvc.org/doc/user-guide/project-structure/internal-files>.

@@ -199,8 +199,8 @@ impl Start {
         self.inflated.is_some()
     }
 
-    /// Whether the content of a compressed file is compressed once more.
-    pub(in crate::data::load) fn is_packed_twice(&self) -> bool {
+    /// True where the content of a compressed file is compressed once more.
+    pub(crate) fn is_packed_twice(&self) -> bool {
         self.inflated.as_deref().is_some_and(is_gzip)
     }
 

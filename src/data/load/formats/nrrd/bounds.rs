@@ -1,11 +1,11 @@
 //! Ends of an axis, as headers say them that have `axis mins` and `axis maxs` in place of `spacings`.
 
-/// Where an axis begins and ends, in the file's unit; NaN where that is not known.
+/// Begin and end of an axis in the file's unit; NaN where they are not known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct AxisBounds {
     pub(super) low: f64,
     pub(super) high: f64,
-    /// Whether the first and last sample lie at the bounds, and not half a distance within.
+    /// True where the first and last sample lie at the bounds, and not half a distance within.
     pub(super) is_node: bool,
 }
 

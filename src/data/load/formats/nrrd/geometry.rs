@@ -52,7 +52,7 @@ pub(super) struct Geometry {
     pub(super) is_color: bool,
     /// Whether those numbers are time steps, and not components.
     pub(super) are_times: bool,
-    /// Whether the header calls them a list: volumes of their own, unless they are layers of labels.
+    /// True where the header calls them a list: volumes of their own, unless they are layers of labels.
     pub(super) are_listed: bool,
     /// Volumes behind each other.
     pub(super) frames: u64,
@@ -71,7 +71,7 @@ struct Axis {
     direction_mm: Option<DVec3>,
     /// The distance of its samples in millimetres; NaN where it is not known.
     spacing_mm: f64,
-    /// Where its first sample lies in millimetres, by its bounds; 0 where they are not known.
+    /// Place of its first sample in millimetres, by its bounds; 0 where they are not known.
     first_mm: f64,
 }
 

@@ -69,7 +69,7 @@ impl Grid {
 }
 
 impl Grid {
-    /// Whether it looks like numbers that belong to something else, where an array has so many axes: fewer than 16 along
+    /// True for numbers that look as if they belonged to something else, in an array of so many axes: fewer than 16 along
     /// one of two are an affine, a matrix or a list of points; 2 by 2 to 4 by 4 of more are matrices in a row.
     pub(super) fn is_table(&self, axes: usize) -> bool {
         const FEWEST_PIXELS: u64 = 16;

@@ -14,7 +14,7 @@ const MOST_PADDING_BYTES: u64 = 16 << 20;
 
 /// Decoder of a single member.
 pub(crate) trait Member: Read {
-    /// Where its bytes come from.
+    /// Source of its bytes.
     type Packed: BufRead;
     /// The bytes that every member begins with.
     const MAGIC: &'static [u8];
@@ -22,7 +22,7 @@ pub(crate) trait Member: Read {
     /// A decoder of the member that comes next.
     fn new(packed: Self::Packed) -> Self;
 
-    /// What follows the member, once all of it has been read.
+    /// Bytes that follow the member, once all of it has been read.
     fn into_packed(self) -> Self::Packed;
 }
 
@@ -134,7 +134,7 @@ impl<R: BufRead> Lookahead<R> {
         Ok(false)
     }
 
-    /// Whether these bytes come next. They are read all the same later.
+    /// True where these bytes come next. They are read all the same later.
     fn begins_with(&mut self, bytes: &[u8]) -> io::Result<bool> {
         let mut front = Vec::new();
         while front.len() < bytes.len() {

@@ -1,4 +1,4 @@
-//! What the numbers in a file's name count: slices, channels, time steps or places, by the letters before them.
+//! Meaning of the numbers in a file's name: slices, channels, time steps or places, by the letters before them.
 //!
 //! Microscopes write such names, each maker in an order of its own: `Series001_z00_ch00` (Leica), `s_C001Z001T001`
 //! (Olympus), `exp_w1_s2_t3` (`MetaMorph`, `ImageXpress`), `img_channel000_position001_time000000000_z000`
@@ -6,7 +6,7 @@
 
 /// Kind of a number in a name, the likeliest to count slices first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Counter {
+pub(super) enum NameCounter {
     /// Slices, by the word for them.
     Slice,
     /// Anything: no word is before it, or one that says no more than that it counts.
@@ -54,30 +54,30 @@ const CHANNELS: [&str; 17] = [
 /// Characters between a word and its number.
 const SEPARATORS: [char; 8] = [' ', '_', '-', '.', '=', '#', '(', '['];
 
-/// What each number of a name counts, by the text before it.
-pub(super) fn counters<'a>(texts: impl IntoIterator<Item = &'a str>) -> Vec<Counter> {
+/// Kind of each number of a name, by the text before it.
+pub(super) fn counters<'a>(texts: impl IntoIterator<Item = &'a str>) -> Vec<NameCounter> {
     let words: Vec<Option<String>> = texts.into_iter().map(word).collect();
     let has = |word: &str| words.iter().flatten().any(|other| other == word);
     let (has_wavelengths, has_channels) = (has("w"), has("ch"));
     let counter = |word: &Option<String>| match word.as_deref() {
-        None => Counter::Number,
+        None => NameCounter::Number,
         // Beside wavelengths it is a site, beside channels a column of wells.
-        Some("s") if has_wavelengths => Counter::Place,
-        Some("c") if has_channels => Counter::Place,
-        Some(word) => known(word).unwrap_or(Counter::Place),
+        Some("s") if has_wavelengths => NameCounter::Place,
+        Some("c") if has_channels => NameCounter::Place,
+        Some(word) => known(word).unwrap_or(NameCounter::Place),
     };
     words.iter().map(counter).collect()
 }
 
-fn known(word: &str) -> Option<Counter> {
+fn known(word: &str) -> Option<NameCounter> {
     if SLICES.contains(&word) {
-        Some(Counter::Slice)
+        Some(NameCounter::Slice)
     } else if NUMBERS.contains(&word) {
-        Some(Counter::Number)
+        Some(NameCounter::Number)
     } else if TIMES.contains(&word) {
-        Some(Counter::Time)
+        Some(NameCounter::Time)
     } else {
-        CHANNELS.contains(&word).then_some(Counter::Channel)
+        CHANNELS.contains(&word).then_some(NameCounter::Channel)
     }
 }
 
@@ -104,9 +104,9 @@ fn word(text: &str) -> Option<String> {
     is_next.then(|| if whole.ends_with('z') { "z".to_owned() } else { whole })
 }
 
-/// Which of some numbers counts the slices: the last of the likeliest kind.
-pub(super) fn slice_column(varying: &[usize], counters: &[Counter]) -> Option<usize> {
-    let kind = |column: usize| counters.get(column).copied().unwrap_or(Counter::Number);
+/// Number among some that counts the slices: the last of the likeliest kind.
+pub(super) fn slice_column(varying: &[usize], counters: &[NameCounter]) -> Option<usize> {
+    let kind = |column: usize| counters.get(column).copied().unwrap_or(NameCounter::Number);
     let likeliest = varying.iter().map(|&column| kind(column)).min()?;
     varying.iter().copied().rfind(|&column| kind(column) == likeliest)
 }
@@ -117,7 +117,7 @@ mod tests {
 
     #[test]
     fn words_before_numbers_say_what_they_count() {
-        use Counter::{Channel, Number, Place, Slice, Time};
+        use NameCounter::{Channel, Number, Place, Slice, Time};
         for (text, expected) in [
             ("_z", Slice),
             ("slice_", Slice),
@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     fn the_likeliest_number_counts_the_slices() {
-        use Counter::{Channel, Number, Place, Slice, Time};
+        use NameCounter::{Channel, Number, Place, Slice, Time};
         for (kinds, expected) in [
             (&[Slice, Channel][..], 0),
             (&[Channel, Number], 1),

@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
-use super::counters::{Counter, counters, slice_column};
+use super::counters::{NameCounter, counters, slice_column};
 use super::picture::Kind;
 
 /// Files that are slices of one volume, by their numbers in the list of all.
@@ -21,8 +21,8 @@ pub(super) struct Group {
 struct Pieces {
     texts: Vec<String>,
     digits: Vec<String>,
-    /// What each of the numbers counts.
-    counters: Vec<Counter>,
+    /// Kind of each of the numbers.
+    counters: Vec<NameCounter>,
 }
 
 impl Pieces {
@@ -75,7 +75,7 @@ fn without_mark(name: &str) -> String {
     at.map_or_else(|| name.to_owned(), |at| [&name[..at], &name[at + MARK_BYTES..]].concat())
 }
 
-/// What names of slices have in common: theirs with `#` in place of all numbers.
+/// Name with `#` in place of all numbers, which slices have in common.
 pub(super) fn pattern(path: &Path) -> String {
     Pieces::of(path).name(|_| true)
 }

@@ -98,7 +98,7 @@ fn of_slice(path: &Path) -> Attempt<'_> {
     Attempt { what: "read the slice", path }
 }
 
-/// What is said of files that are named like slices of a group, or at least like pictures, and hold none: copies that were
+/// Remark on files that are named like slices of a group, or at least like pictures, and hold none: copies that were
 /// cut off or damaged.
 fn damaged(others: &[&Path], group: &Group, pictures: &[(&Path, Kind)]) -> Option<String> {
     // As many as a line has room for.

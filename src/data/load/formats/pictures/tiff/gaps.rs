@@ -2,16 +2,16 @@
 
 use super::stack::Slice;
 
-/// Slices that are shown of a recording, and what the user is told of the others.
+/// Slices that are shown of a recording, with what the user is told of the others.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) struct Recorded {
+pub(super) struct SliceRun {
     /// From the first that has a page to the last; those between without a page are empty.
     pub(super) slices: Vec<Option<Slice>>,
     pub(super) remark: Option<String>,
 }
 
-impl Recorded {
-    /// What is shown of slices of which some have no page; `None` where none has one.
+impl SliceRun {
+    /// Run of slices of which some have no page; `None` where none has one.
     pub(super) fn new(slices: &[Option<Slice>]) -> Option<Self> {
         let first = slices.iter().position(Option::is_some)?;
         let last = slices.iter().rposition(Option::is_some)?;
@@ -54,9 +54,9 @@ mod tests {
         let slices = |pages: &[i32]| -> Vec<Option<Slice>> {
             pages.iter().map(|&page| usize::try_from(page).ok().map(|page| Slice { file: 0, page })).collect()
         };
-        let recorded = |pages: &[i32]| Recorded::new(&slices(pages));
+        let recorded = |pages: &[i32]| SliceRun::new(&slices(pages));
         assert_eq!(recorded(&[-1, -1]), None);
-        assert_eq!(recorded(&[0, 1]), Some(Recorded { slices: slices(&[0, 1]), remark: None }));
+        assert_eq!(recorded(&[0, 1]), Some(SliceRun { slices: slices(&[0, 1]), remark: None }));
         let stopped = recorded(&[0, 1, -1, -1]).unwrap();
         assert_eq!(stopped.slices, slices(&[0, 1]));
         assert!(stopped.remark.unwrap().contains("4 slices are said, and there are pages for the first 2"));

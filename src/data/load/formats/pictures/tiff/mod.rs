@@ -47,7 +47,7 @@ pub(in crate::data::load) const COMPANION: Reader = Reader {
     load: load_companion,
 };
 
-/// What messages say is being done.
+/// Action that messages name.
 const WHAT: &str = "read the TIFF volume";
 
 /// Loads a TIFF file.

@@ -44,7 +44,7 @@ pub(super) fn is_xml(start: &Start) -> bool {
 #[derive(Debug, Clone)]
 struct Style {
     words: Words,
-    /// What packs what is not text; the name of one that is not read is refused only where it has packed something.
+    /// Compressor of what is not text; the name of one that is not read is refused only where it has packed something.
     compressor: Option<Result<Compressor, String>>,
     /// Whether what is appended is base64.
     appends_text: bool,

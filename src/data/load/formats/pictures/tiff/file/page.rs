@@ -37,7 +37,7 @@ pub(in super::super) mod tag {
     pub(in super::super::super) const DEPTH: u16 = 32997;
     /// Of GDAL, in text: the value of what was not measured.
     pub(in super::super::super) const NO_DATA: u16 = 42113;
-    /// Of `ImageJ`: lengths of what it keeps beside its stacks, and that.
+    /// Lengths of what `ImageJ` keeps beside its stacks, and that.
     pub(in super::super::super) const IMAGEJ_COUNTS: u16 = 50838;
     pub(in super::super::super) const IMAGEJ_CONTENT: u16 = 50839;
     /// Of Zeiss' laser scanning microscopes.

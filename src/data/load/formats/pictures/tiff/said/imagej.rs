@@ -8,7 +8,7 @@ use super::super::file::Tiff;
 use super::super::plain::usable;
 use super::super::stack::{Slice, Stack, Steps};
 use super::contiguous::contiguous;
-use super::names::Kept;
+use super::names::ImagejMetadata;
 use super::place::place;
 use crate::data::Hints;
 use crate::data::attempt::Attempt;
@@ -82,7 +82,7 @@ pub(in super::super) fn stack(
         (1, pages.len(), 1)
     };
     let dims = [first.width, first.height, slices as u64];
-    let channel_names = Kept::of(tiff).channel_names(channels, pages.len());
+    let channel_names = ImagejMetadata::read(tiff).channel_names(channels, pages.len());
     let chosen = Steps { dims, channels, channel_names, frames }.chosen(attempt, choice)?;
     let mut placement = place(tiff, said.text("unit"), said.number("spacing"));
     placement.remarks.splice(0..0, remarks);

@@ -16,18 +16,18 @@ const LABELS: u32 = u32::from_be_bytes(*b"labl");
 /// Begins the list of kinds.
 const MAGIC: u32 = u32::from_be_bytes(*b"IJIJ");
 
-/// What is kept beside the pages.
+/// Words that `ImageJ` keeps beside the pages.
 #[derive(Debug, Default, PartialEq, Eq)]
-pub(super) struct Kept {
+pub(super) struct ImagejMetadata {
     /// A label for each page, or, of other programs, for each channel.
     labels: Vec<String>,
     /// Lines like `key = value`.
     info: String,
 }
 
-impl Kept {
-    /// What a file keeps; nothing where it has no such entries, or broken ones.
-    pub(super) fn of(tiff: &mut Tiff) -> Self {
+impl ImagejMetadata {
+    /// Those of a file; nothing where it has no such entries, or broken ones.
+    pub(super) fn read(tiff: &mut Tiff) -> Self {
         let counts = tiff.first.get(tag::IMAGEJ_COUNTS);
         let counts = counts.and_then(|entry| entry.numbers(&mut tiff.bytes, MOST_BYTES / 4).ok());
         let content = tiff.first.get(tag::IMAGEJ_CONTENT);
@@ -137,7 +137,7 @@ fn bare(label: &str) -> String {
 }
 
 #[cfg(test)]
-pub(in super::super) mod tests {
+pub(crate) mod tests {
     use super::*;
 
     fn number(value: u32, endian: Endian) -> [u8; 4] {
@@ -145,11 +145,7 @@ pub(in super::super) mod tests {
     }
 
     /// Both entries, as `ImageJ` writes them.
-    pub(in super::super::super) fn entries(
-        info: &str,
-        labels: &[&str],
-        endian: Endian,
-    ) -> (Vec<u64>, Vec<u8>) {
+    pub(crate) fn entries(info: &str, labels: &[&str], endian: Endian) -> (Vec<u64>, Vec<u8>) {
         let text = |text: &str| -> Vec<u8> {
             let unit =
                 |unit: u16| if endian == Endian::Big { unit.to_be_bytes() } else { unit.to_le_bytes() };
@@ -169,7 +165,7 @@ pub(in super::super) mod tests {
         let mut found = Vec::new();
         for endian in [Endian::Little, Endian::Big] {
             let (counts, content) = entries(info, labels, endian);
-            found = Kept::parse(&counts, &content, endian).unwrap().channel_names(channels, pages);
+            found = ImagejMetadata::parse(&counts, &content, endian).unwrap().channel_names(channels, pages);
         }
         found
     }
@@ -197,13 +193,13 @@ pub(in super::super) mod tests {
     fn broken_entries_say_nothing() {
         let (counts, content) = entries("a", &["b", "c"], Endian::Little);
         for end in 0..content.len() {
-            let _nothing_or_less = Kept::parse(&counts, &content[..end], Endian::Little);
+            let _nothing_or_less = ImagejMetadata::parse(&counts, &content[..end], Endian::Little);
         }
-        assert_eq!(Kept::parse(&counts, &content, Endian::Big), None);
-        assert_eq!(Kept::parse(&[], &content, Endian::Little), None);
-        assert_eq!(Kept::parse(&[u64::MAX, 4], &content, Endian::Little), None);
+        assert_eq!(ImagejMetadata::parse(&counts, &content, Endian::Big), None);
+        assert_eq!(ImagejMetadata::parse(&[], &content, Endian::Little), None);
+        assert_eq!(ImagejMetadata::parse(&[u64::MAX, 4], &content, Endian::Little), None);
         let mut endless = content.clone();
         endless[8..12].copy_from_slice(&u32::MAX.to_le_bytes());
-        assert_eq!(Kept::parse(&counts, &endless, Endian::Little), None);
+        assert_eq!(ImagejMetadata::parse(&counts, &endless, Endian::Little), None);
     }
 }

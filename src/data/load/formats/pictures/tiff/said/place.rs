@@ -1,11 +1,11 @@
-//! How far apart voxels are, by the resolution of the first page, a unit and a distance of slices.
+//! Distances of voxels, by the resolution of the first page, a unit and a distance of slices.
 
 use super::super::file::Tiff;
 use super::super::file::page::tag;
 use super::length::millimetres;
 use crate::data::load::reading::placement::Placement;
 
-/// Where voxels lie, by the name of a unit of length and the distance of slices in it.
+/// Placement of voxels, by the name of a unit of length and the distance of slices in it.
 pub(super) fn place(tiff: &mut Tiff, unit: Option<&str>, spacing: Option<f64>) -> Placement {
     let per_unit = |number: Option<f64>| {
         number.filter(|number| number.is_finite() && *number > 0.0).map(|number| 1.0 / number)

@@ -12,7 +12,7 @@ use roxmltree::{Document, Node};
 use super::super::fault::HELP;
 use super::super::file::Tiff;
 use super::super::file::page::Meaning;
-use super::super::gaps::Recorded;
+use super::super::gaps::SliceRun;
 use super::super::stack::{Slice, Stack, Steps};
 use super::length::millimetres;
 use crate::data::attempt::{Attempt, quoted};
@@ -111,11 +111,7 @@ pub(in super::super) fn stack(
 ///
 /// # Errors
 /// `BadInput` where it names none or one that may not be read, `Io` where none is there.
-pub(in super::super) fn first_file(
-    attempt: Attempt<'_>,
-    xml: &str,
-    choice: &Choice,
-) -> Result<PathBuf, LoadError> {
+pub(crate) fn first_file(attempt: Attempt<'_>, xml: &str, choice: &Choice) -> Result<PathBuf, LoadError> {
     let document = parsed(attempt, xml)?;
     let (_, pixels) = image_of(attempt, document.root_element(), choice)?;
     // Of more that are not there none would be found behind them.
@@ -143,7 +139,7 @@ fn is_counted(name: &str) -> bool {
 }
 
 /// The text of a file of XML.
-pub(in super::super) fn companion_text(attempt: Attempt<'_>) -> Result<String, LoadError> {
+pub(crate) fn companion_text(attempt: Attempt<'_>) -> Result<String, LoadError> {
     use std::io::Read as _;
     let input = crate::data::load::reading::input::Input::open(attempt)?;
     crate::data::load::reading::read_files::note(attempt.path);
@@ -179,7 +175,7 @@ fn named<'a>(image: Node<'a, '_>) -> &'a str {
     image.attribute("Name").unwrap_or_default()
 }
 
-/// What a channel is called: by its name, its dye, or the light that it sends.
+/// Name of a channel: its own, its dye, or the light that it sends.
 fn channel_name(channel: Node<'_, '_>) -> String {
     let said = |name: &str| channel.attribute(name).map(str::trim).filter(|text| !text.is_empty());
     let wavelength = || {
@@ -222,7 +218,7 @@ fn of_root(
     let wanted: Vec<[usize; 3]> =
         chosen.slices(slices, frames).into_iter().map(|[frame, slice]| [slice, channel, frame]).collect();
     let found = pages.find(attempt, &wanted)?;
-    let Some(Recorded { slices, remark }) = Recorded::new(&found.slices) else {
+    let Some(SliceRun { slices, remark }) = SliceRun::new(&found.slices) else {
         return Err(pages.nothing(attempt, channel, chosen.frame));
     };
     let mut placement = place(pixels);

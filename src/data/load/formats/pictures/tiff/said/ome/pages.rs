@@ -26,12 +26,12 @@ pub(super) struct Pages<'a> {
 }
 
 /// Pages of some slices.
-pub(super) struct Found {
+pub(super) struct SlicePages {
     /// None for those that have no page.
     pub(super) slices: Vec<Option<Slice>>,
     /// The files that they lie in beside the one that is opened.
     pub(super) beside: Vec<PathBuf>,
-    /// What is said of files that are not there.
+    /// Remark on files that are not there.
     pub(super) lost_files: Option<String>,
 }
 
@@ -91,7 +91,7 @@ impl<'a> Pages<'a> {
     ///
     /// # Errors
     /// `BadInput` where the name of a file leads out of the folder.
-    pub(super) fn find(&self, attempt: Attempt<'_>, wanted: &[[usize; 3]]) -> Result<Found, LoadError> {
+    pub(super) fn find(&self, attempt: Attempt<'_>, wanted: &[[usize; 3]]) -> Result<SlicePages, LoadError> {
         let (mut beside, mut lost) = (Vec::new(), Vec::new());
         let mut known: HashMap<&str, Option<usize>> = HashMap::new();
         let mut slices = Vec::with_capacity(wanted.len());
@@ -126,7 +126,7 @@ impl<'a> Pages<'a> {
             0 => format!("the file {} is not there", quoted(first)),
             more => format!("the file {} is not there, nor are {more} others", quoted(first)),
         });
-        Ok(Found { slices, beside, lost_files })
+        Ok(SlicePages { slices, beside, lost_files })
     }
 
     /// Time steps up to the last that a page is said for.
@@ -145,13 +145,13 @@ impl<'a> Pages<'a> {
         places.map(|(at, _)| along(at) + 1).max().unwrap_or(self.sizes[axis])
     }
 
-    /// Whether a page is there, as far as is known without opening another file.
+    /// True where a page is there, as far as is known without opening another file.
     fn may_be_there(&self, &(name, page): &(&str, usize)) -> bool {
         let is_own = name.is_empty() || Some(name) == self.own;
         !is_own || page < self.own_pages
     }
 
-    /// What is said where a channel and a time have no page at all.
+    /// Error for a channel and a time that have no page at all.
     pub(super) fn nothing(&self, attempt: Attempt<'_>, channel: usize, frame: usize) -> LoadError {
         // As many as a line has room for.
         const MOST_LISTED: usize = 8;

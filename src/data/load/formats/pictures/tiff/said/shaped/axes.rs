@@ -1,38 +1,38 @@
-//! What the axes of an array stand for that lie before those of a page: slices, channels, time steps, or series.
+//! Meaning of the axes of an array that lie before those of a page: slices, channels, time steps, or series.
 
 use super::super::super::file::directory::MOST_PAGES;
 use super::super::super::file::page::Page;
 
 /// An axis of an array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Axis {
+struct ArrayAxis {
     size: u64,
-    /// The letter of tifffile's `axes` (<https://www.cgohlke.com>, `TIFF.AXES_CODES`).
+    /// Letter of tifffile's `axes` (<https://www.cgohlke.com>, `TIFF.AXES_CODES`).
     letter: char,
 }
 
-/// An axis of pages, and how many pages one step along it is.
+/// Axis of pages, with the pages that one step along it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Stride {
+pub(super) struct PageStride {
     pub(super) size: usize,
     pub(super) pages: usize,
 }
 
 /// Axes of pages by what they stand for.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub(super) struct Axes {
-    pub(super) slices: Option<Stride>,
-    pub(super) channels: Option<Stride>,
-    pub(super) frames: Option<Stride>,
+pub(super) struct PageAxes {
+    pub(super) slices: Option<PageStride>,
+    pub(super) channels: Option<PageStride>,
+    pub(super) frames: Option<PageStride>,
     /// The others, the slowest first.
-    pub(super) series: Vec<Stride>,
-    /// Whether nothing was said of what they stand for, and there are several.
+    pub(super) series: Vec<PageStride>,
+    /// True where there are several, and nothing was said of what they stand for.
     pub(super) is_assumed: bool,
     /// Pages of all of them.
     pub(super) pages: usize,
 }
 
-impl Axes {
+impl PageAxes {
     /// The axes of an array whose last ones are those of a page. `None` where a page is no such part of it, or where there
     /// would be more pages than any file has.
     pub(super) fn new(shape: &[u64], letters: &str, page: &Page) -> Option<Self> {
@@ -46,8 +46,8 @@ impl Axes {
             [(page.height, 'Y'), (page.width, 'X'), (samples, 'S')]
         };
         // Axes of one step are there or not, as a program likes.
-        let all: Vec<Axis> = (0..shape.len())
-            .map(|at| Axis { size: shape[at], letter: letter(at) })
+        let all: Vec<ArrayAxis> = (0..shape.len())
+            .map(|at| ArrayAxis { size: shape[at], letter: letter(at) })
             .filter(|axis| axis.size != 1)
             .collect();
         let of_page: Vec<(u64, char)> = of_page.into_iter().filter(|&(size, _)| size != 1).collect();
@@ -63,12 +63,12 @@ impl Axes {
     }
 
     /// The axes of so many pages, the slowest first.
-    fn of_pages(outer: &[Axis]) -> Option<Self> {
+    fn of_pages(outer: &[ArrayAxis]) -> Option<Self> {
         let mut axes = Self { pages: 1, ..Self::default() };
         let mut strides = Vec::new();
         for axis in outer.iter().rev() {
             let size = usize::try_from(axis.size).ok().filter(|&size| size > 0)?;
-            strides.push(Stride { size, pages: axes.pages });
+            strides.push(PageStride { size, pages: axes.pages });
             axes.pages = axes.pages.checked_mul(size).filter(|&pages| pages <= MOST_PAGES)?;
         }
         strides.reverse();
@@ -100,7 +100,7 @@ impl Axes {
         Some(axes)
     }
 
-    /// How many series there are.
+    /// Number of series.
     pub(super) fn series_count(&self) -> usize {
         self.series.iter().map(|stride| stride.size).product()
     }
@@ -132,10 +132,13 @@ mod tests {
     use super::*;
 
     fn of(letters: &str) -> String {
-        let outer: Vec<Axis> =
-            letters.chars().enumerate().map(|(at, letter)| Axis { size: at as u64 + 2, letter }).collect();
-        let axes = Axes::of_pages(&outer).unwrap();
-        let size = |stride: Option<Stride>| stride.map_or(0, |stride| stride.size);
+        let outer: Vec<ArrayAxis> = letters
+            .chars()
+            .enumerate()
+            .map(|(at, letter)| ArrayAxis { size: at as u64 + 2, letter })
+            .collect();
+        let axes = PageAxes::of_pages(&outer).unwrap();
+        let size = |stride: Option<PageStride>| stride.map_or(0, |stride| stride.size);
         let series: Vec<usize> = axes.series.iter().map(|stride| stride.size).collect();
         format!("z{} c{} t{} s{series:?}", size(axes.slices), size(axes.channels), size(axes.frames))
     }
@@ -168,8 +171,8 @@ mod tests {
 
     #[test]
     fn pages_of_series_are_counted_along_their_axes() {
-        let stride = |size, pages| Stride { size, pages };
-        let axes = Axes { series: vec![stride(2, 100), stride(3, 5)], ..Axes::default() };
+        let stride = |size, pages| PageStride { size, pages };
+        let axes = PageAxes { series: vec![stride(2, 100), stride(3, 5)], ..PageAxes::default() };
         assert_eq!(axes.series_count(), 6);
         assert_eq!((0..6).map(|at| axes.series_page(at)).collect::<Vec<_>>(), [0, 5, 10, 100, 105, 110]);
     }

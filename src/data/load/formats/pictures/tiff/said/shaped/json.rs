@@ -6,16 +6,16 @@ use serde_json::Value;
 /// Bytes of a description that are read: programs put what they know beside the shape.
 pub(super) const MOST_BYTES: u64 = 1 << 20;
 
-/// What is said of a series of pages.
+/// Words on a series of pages.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(default)]
-pub(super) struct Words {
+pub(super) struct ShapeDescription {
     /// Sizes of the array, the slowest axis first.
     pub(super) shape: Vec<u64>,
     /// A letter for each axis.
     pub(super) axes: Option<String>,
     pub(super) name: Option<String>,
-    /// Whether one page stands for all.
+    /// True where one page stands for all.
     pub(super) truncated: bool,
     /// The distance of slices.
     pub(super) spacing: Option<f64>,
@@ -29,8 +29,8 @@ pub(super) struct Words {
     labels: Value,
 }
 
-impl Words {
-    /// What a description says; `None` where it is another one.
+impl ShapeDescription {
+    /// Words of a description; `None` where it is another one.
     pub(super) fn parse(description: &str) -> Option<Self> {
         let description = description.trim();
         if let Some(old) = description.strip_prefix("shape=(") {
@@ -73,7 +73,7 @@ mod tests {
 
     #[test]
     fn shapes_are_understood_in_both_forms() {
-        let shape = |text: &str| Words::parse(text).map(|words| words.shape);
+        let shape = |text: &str| ShapeDescription::parse(text).map(|words| words.shape);
         assert_eq!(shape("{\"shape\": [2, 8, 7, 8]}"), Some(vec![2, 8, 7, 8]));
         assert_eq!(shape("shape=(2, 8,7,)"), Some(vec![2, 8, 7]));
         assert_eq!(shape("{\"axes\": 7, \"shape\": [3, 1]}"), Some(vec![3, 1]), "axes of another type");
@@ -91,7 +91,7 @@ mod tests {
             "{\"shape\": [2], \"Channel\": [{\"Name\": \"a\"}, {\"Name\": \"b\"}]}",
             "{\"shape\": [2], \"Labels\": [\"a\", \"b\"]}",
         ] {
-            let words = Words::parse(text).unwrap();
+            let words = ShapeDescription::parse(text).unwrap();
             assert_eq!(words.channel_names(2), ["a", "b"], "{text}");
             assert!(words.channel_names(3).is_empty());
         }

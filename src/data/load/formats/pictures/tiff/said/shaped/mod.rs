@@ -1,4 +1,4 @@
-//! What tifffile says of its pages, and programs that write with it (napari, scikit-image): the shape of an array, and
+//! Words of tifffile on its pages, and of programs that write with it (napari, scikit-image): the shape of an array, and
 //! perhaps a letter for each of its axes. Files may hold several arrays, each with a shape on its first page.
 //!
 //! After tifffile's own reader (`TiffFile._series_shaped`, <https://github.com/cgohlke/tifffile>).
@@ -9,7 +9,7 @@ mod json;
 use super::super::fault::HELP;
 use super::super::file::Tiff;
 use super::super::file::page::{Meaning, Page};
-use super::super::gaps::Recorded;
+use super::super::gaps::SliceRun;
 use super::super::stack::{Slice, Stack, Steps};
 use super::contiguous::contiguous;
 use super::place::place;
@@ -17,16 +17,16 @@ use crate::data::Hints;
 use crate::data::attempt::Attempt;
 use crate::data::load::reading::input::stem;
 use crate::data::load::{Choice, Dimension, LoadError, Offer};
-use axes::{Axes, Stride};
-use json::{MOST_BYTES, Words};
+use axes::{PageAxes, PageStride};
+use json::{MOST_BYTES, ShapeDescription};
 
 /// Series of a file that are offered at most: more than any list can be chosen from.
 const MOST_SERIES: usize = 1 << 16;
 
 /// An array in a file.
-struct Array {
-    words: Words,
-    axes: Axes,
+struct ShapedArray {
+    words: ShapeDescription,
+    axes: PageAxes,
     /// The page of its first slice.
     first: usize,
     /// Pages of it that are there.
@@ -34,15 +34,16 @@ struct Array {
 }
 
 /// The arrays of a file; none where it is not said what its pages are, or where that says nothing: each is an array.
-fn arrays(tiff: &mut Tiff, remarks: &mut Vec<String>) -> Vec<Array> {
-    let mut arrays: Vec<Array> = Vec::new();
+fn arrays(tiff: &mut Tiff, remarks: &mut Vec<String>) -> Vec<ShapedArray> {
+    let mut arrays: Vec<ShapedArray> = Vec::new();
     let mut first = 0;
     while first < tiff.pages.len() {
         let page = tiff.pages[first];
         let texts = page.descriptions.into_iter().flatten();
-        let words = texts.into_iter().find_map(|entry| Words::parse(&tiff.text_of(entry, MOST_BYTES)?));
+        let words =
+            texts.into_iter().find_map(|entry| ShapeDescription::parse(&tiff.text_of(entry, MOST_BYTES)?));
         let found = words.and_then(|words| {
-            let axes = Axes::new(&words.shape, words.axes.as_deref().unwrap_or_default(), &page)?;
+            let axes = PageAxes::new(&words.shape, words.axes.as_deref().unwrap_or_default(), &page)?;
             Some((words, axes))
         });
         let Some((words, axes)) = found else {
@@ -58,7 +59,7 @@ fn arrays(tiff: &mut Tiff, remarks: &mut Vec<String>) -> Vec<Array> {
         // A page that begins an array of its own ends this one, whatever its shape promises.
         let others = tiff.pages[first + 1..].iter().take(axes.pages - 1);
         let pages = if words.truncated { 1 } else { 1 + others.take_while(|other| is_like(other)).count() };
-        arrays.push(Array { words, axes, first, pages });
+        arrays.push(ShapedArray { words, axes, first, pages });
         first += pages;
     }
     // Pages that were written one by one are slices, as all pages are of which nothing is said.
@@ -77,7 +78,7 @@ pub(in super::super) fn stack(
         return Ok(None);
     }
     let (at, series) = chosen_array(attempt, tiff, &arrays, choice)?;
-    let Array { words, axes, first, pages } = arrays.swap_remove(at);
+    let ShapedArray { words, axes, first, pages } = arrays.swap_remove(at);
     let page = tiff.pages[first];
     // One page for all, as long as what is said.
     let follow = (pages == 1 && axes.pages > 1 && page.is_bare())
@@ -94,9 +95,9 @@ pub(in super::super) fn stack(
     };
     let inside = if page.meaning == Meaning::Channels { page.samples } else { 1 };
     let of_series = axes.series_page(series);
-    let size = |stride: Option<Stride>| stride.map_or(1, |stride| stride.size);
+    let size = |stride: Option<PageStride>| stride.map_or(1, |stride| stride.size);
     // Of a recording that was stopped those that have a page at least.
-    let begun = |stride: Option<Stride>, what: &str, remarks: &mut Vec<String>| {
+    let begun = |stride: Option<PageStride>, what: &str, remarks: &mut Vec<String>| {
         let Some(stride) = stride else { return 1 };
         let begun = stride.size.min(pages.saturating_sub(of_series + 1) / stride.pages + 1);
         if begun < stride.size {
@@ -115,13 +116,13 @@ pub(in super::super) fn stack(
         frames,
     };
     let chosen = steps.chosen(attempt, choice)?;
-    let step = |stride: Option<Stride>, at: usize| stride.map_or(0, |stride| stride.pages * at);
+    let step = |stride: Option<PageStride>, at: usize| stride.map_or(0, |stride| stride.pages * at);
     let wanted = chosen.slices(slices, frames).into_iter().map(|[frame, slice]| {
         let channel = step(axes.channels, chosen.channel / inside);
         let page = of_series + channel + step(axes.frames, frame) + step(axes.slices, slice);
         (page < pages).then_some(Slice { file: 0, page: first + page })
     });
-    let Some(Recorded { slices, remark }) = Recorded::new(&wanted.collect::<Vec<_>>()) else {
+    let Some(SliceRun { slices, remark }) = SliceRun::new(&wanted.collect::<Vec<_>>()) else {
         let why = format!("{} pages are said, and {pages} are there: none for what is chosen", axes.pages);
         return Err(attempt.bad_input("shape", why, HELP));
     };
@@ -145,11 +146,11 @@ pub(in super::super) fn stack(
     }))
 }
 
-/// Which array is meant, and which series of it.
+/// Array that is meant, and series of it.
 fn chosen_array(
     attempt: Attempt<'_>,
     tiff: &Tiff,
-    arrays: &[Array],
+    arrays: &[ShapedArray],
     choice: &Choice,
 ) -> Result<(usize, usize), LoadError> {
     let counts: Vec<usize> = arrays.iter().map(|array| array.axes.series_count()).collect();
