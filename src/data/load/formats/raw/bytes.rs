@@ -72,7 +72,7 @@ impl RawBytes {
         file.seek(SeekFrom::Start(file_bytes - end.len() as u64))?;
         read_full(&mut file, &mut end)?;
         end.truncate(end.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1));
-        let said = end.last_chunk().copied().unwrap_or_default();
+        let said = end.last_chunk::<4>().copied().unwrap_or_default();
         file.seek(SeekFrom::Start(0))?;
         let mut start = Vec::new();
         let mut inflated = GzipMembers::new(BufReader::with_capacity(1 << 18, file)).take(INFLATED);
