@@ -116,7 +116,13 @@ fn load_archive(mut source: Source<'_>) -> Result<Volume, LoadError> {
             Err(error) => refused.push(error),
         }
     }
-    leave_out_tables(&mut arrays, source.options.choice.array.as_deref());
+    // Beside a volume, matrices and tables are no pictures: an affine, directions, a list of points. One that is named is
+    // meant.
+    let named = source.options.choice.array.as_deref();
+    let is_table = |header: &Header, grid: &Grid| grid.is_table(header.shape.len());
+    if arrays.iter().any(|(_, header, grid)| !is_table(header, grid)) {
+        arrays.retain(|(entry, header, grid)| !is_table(header, grid) || named == Some(key(entry).as_str()));
+    }
     // Vectors beside a volume are not offered either; where there is nothing else, why they are no volumes counts.
     if arrays.is_empty() {
         let count = refused.len();
@@ -145,15 +151,6 @@ fn load_archive(mut source: Source<'_>) -> Result<Volume, LoadError> {
 /// By what an array is chosen: its name.
 fn key(entry: &Entry) -> String {
     plain(entry.name.trim_end_matches(ENDING), 80)
-}
-
-/// Beside a volume, matrices and tables are no pictures: an affine, directions, a list of points. One of them that is
-/// named is meant.
-fn leave_out_tables(arrays: &mut Vec<(Entry, Header, Grid)>, named: Option<&str>) {
-    let is_table = |header: &Header, grid: &Grid| grid.is_table(header.shape.len());
-    if arrays.iter().any(|(_, header, grid)| !is_table(header, grid)) {
-        arrays.retain(|(entry, header, grid)| !is_table(header, grid) || named == Some(key(entry).as_str()));
-    }
 }
 
 /// Reads what is wanted of an entry of an archive.

@@ -113,7 +113,7 @@ pub(in super::super) fn stack(
 /// `BadInput` where it names none or one that may not be read, `Io` where none is there.
 pub(crate) fn first_file(attempt: Attempt<'_>, xml: &str, choice: &Choice) -> Result<PathBuf, LoadError> {
     let document = parsed(attempt, xml)?;
-    let (_, pixels) = image_of(attempt, document.root_element(), choice)?;
+    let [_, pixels] = image_of(attempt, document.root_element(), choice)?;
     // Of more that are not there none would be found behind them.
     const MOST_LOOKED_FOR: usize = 1 << 12;
     let names = children(pixels, "TiffData").flat_map(|data| children(data, "UUID"));
@@ -153,13 +153,13 @@ fn image_of<'a, 'i>(
     attempt: Attempt<'_>,
     root: Node<'a, 'i>,
     choice: &Choice,
-) -> Result<(Node<'a, 'i>, Node<'a, 'i>), LoadError> {
-    let mut images: Vec<(Node<'_, '_>, Node<'_, '_>)> =
-        children(root, "Image").filter_map(|image| Some((image, child(image, "Pixels")?))).collect();
+) -> Result<[Node<'a, 'i>; 2], LoadError> {
+    let mut images: Vec<[Node<'_, '_>; 2]> =
+        children(root, "Image").filter_map(|image| Some([image, child(image, "Pixels")?])).collect();
     let offers: Vec<Offer> = images
         .iter()
         .enumerate()
-        .map(|(at, &(image, pixels))| {
+        .map(|(at, &[image, pixels])| {
             let size = |name| number(pixels, name).unwrap_or(0);
             Offer::numbered(at, named(image), [size("SizeX"), size("SizeY"), size("SizeZ")])
         })
@@ -194,7 +194,7 @@ fn of_root(
     let Some(first) = tiff.pages.first() else {
         return Err(attempt.bad_input("pages", "there is none", HELP));
     };
-    let (image, pixels) = image_of(attempt, root, choice)?;
+    let [image, pixels] = image_of(attempt, root, choice)?;
     let sizes = Sizes::of(attempt, pixels, first.samples)?;
     let inside = if first.meaning == Meaning::Channels { first.samples } else { 1 };
     let channels = sizes.channels.saturating_mul(inside);

@@ -77,7 +77,7 @@ pub(in super::super) fn stack(
     if arrays.is_empty() {
         return Ok(None);
     }
-    let (at, series) = chosen_array(attempt, tiff, &arrays, choice)?;
+    let [at, series] = chosen_array(attempt, tiff, &arrays, choice)?;
     let ShapedArray { words, axes, first, pages } = arrays.swap_remove(at);
     let page = tiff.pages[first];
     // One page for all, as long as what is said.
@@ -152,7 +152,7 @@ fn chosen_array(
     tiff: &Tiff,
     arrays: &[ShapedArray],
     choice: &Choice,
-) -> Result<(usize, usize), LoadError> {
+) -> Result<[usize; 2], LoadError> {
     let counts: Vec<usize> = arrays.iter().map(|array| array.axes.series_count()).collect();
     let all = counts.iter().fold(0usize, |all, &count| all.saturating_add(count));
     if all > MOST_SERIES {
@@ -172,9 +172,9 @@ fn chosen_array(
     let mut series = attempt.chosen(choice, Dimension::Series, offers)?;
     for (at, &count) in counts.iter().enumerate() {
         if series < count {
-            return Ok((at, series));
+            return Ok([at, series]);
         }
         series -= count;
     }
-    Ok((0, 0))
+    Ok([0, 0])
 }
