@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::attempt::{Attempt, Held, Kept, quoted};
+use super::attempt::{Attempt, Held, Kept, Watch, quoted};
 use super::load::{LoadControl, LoadError, LoadOptions, load};
 use super::{Volume, synthetic};
 
@@ -38,6 +38,7 @@ pub fn open(
             }
         },
     };
+    attempt.refuse_unasked(&options.choice, &Watch::default())?;
     let volume = synthetic::builtin_within(name, n, options.memory_budget_bytes, &options.choice, control)?;
     // It is made whole.
     let (portion, dims) = (options.choice.portion.unwrap_or_default(), volume.dims());

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::held::{Components, Held, Several, Watch, Whole};
+use super::held::{Aspect, Components, Held, Several, Watch, Whole};
 use super::offer::{Dimension, Offer};
 use super::portion::Portion;
 
@@ -51,6 +51,14 @@ impl Choice {
         }
     }
 
+    /// Text that is said of an aspect, as [`Self::said`].
+    pub(super) fn said_of(&self, aspect: Aspect) -> Option<String> {
+        match aspect {
+            Aspect::Of(dimension) => self.said(dimension),
+            Aspect::Component => self.component.map(|component| component.to_string()),
+        }
+    }
+
     /// The choice with one of the offers of a dimension.
     #[must_use]
     pub fn with(mut self, dimension: Dimension, key: &str) -> Self {
@@ -69,6 +77,9 @@ impl Choice {
     /// # Errors
     /// [`Unclear::Several`] where none was named, [`Unclear::Unknown`] where another was.
     pub(super) fn of(&self, dimension: Dimension, offers: &[Offer]) -> Result<usize, Unclear> {
+        if let Some(watch) = &self.watch {
+            watch.asks(Aspect::Of(dimension));
+        }
         let found = match self.said(dimension) {
             None if offers.len() == 1 => Ok(0),
             None => Err(Unclear::Several),
@@ -106,6 +117,9 @@ impl Choice {
     }
 
     fn watched_component(&self, said: Components) -> Option<usize> {
+        if let Some(watch) = &self.watch {
+            watch.asks(Aspect::Component);
+        }
         let shown = said.shown.filter(|&at| at < said.count || !self.otherwise_first);
         if let Some(watch) = self.watch.as_ref().filter(|_| said.count > 1) {
             watch.saw_components(Components { shown, ..said });

@@ -5,8 +5,12 @@ use std::io;
 use std::path::Path;
 
 use super::choice::{Choice, Unclear};
+use super::held::{Aspect, Watch};
 use super::offer::{Dimension, Offer};
 use crate::data::foreign::plain;
+
+/// Offers that a message lists: as many as a screen has lines for.
+const MOST_LISTED: usize = 24;
 
 /// What a user reads: `WHAT: WHY (file, field); HELP`.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -144,8 +148,6 @@ impl Attempt<'_> {
             Ok(at) => return Ok(at),
             Err(unclear) => unclear,
         };
-        // As many as a screen has lines for.
-        const MOST_LISTED: usize = 24;
         let mut list: Vec<String> = offers.iter().take(MOST_LISTED).map(Offer::to_string).collect();
         if offers.len() > MOST_LISTED {
             list.push(format!("and {} more", offers.len() - MOST_LISTED));
@@ -157,6 +159,50 @@ impl Attempt<'_> {
         };
         let help = format!("choose one with {option}: {}", list.join(", "));
         Err(LoadError::Several { explanation: Box::new(self.explain(option, why, help)), dimension, offers })
+    }
+
+    /// Refuses what is chosen in an aspect that the file does not have: what no reader has asked for. The first, 0, is in
+    /// every file.
+    ///
+    /// # Errors
+    /// `BadInput` with what there is to choose from, unless the first is meant where what is said is not there.
+    pub(crate) fn refuse_unasked(&self, choice: &Choice, watch: &Watch) -> Result<(), LoadError> {
+        let is_unasked = |aspect: Aspect| {
+            let said = choice.said_of(aspect).filter(|said| said != "0")?;
+            (!watch.was_asked(aspect)).then_some((aspect, said))
+        };
+        let Some((aspect, said)) = Aspect::ALL.into_iter().find_map(is_unasked) else { return Ok(()) };
+        if choice.otherwise_first {
+            return Ok(());
+        }
+        let held = watch.held();
+        let several = held.several.iter().map(|several| {
+            let (option, plural, last) = (
+                several.dimension.option(),
+                several.dimension.plural(),
+                several.offers.len().saturating_sub(1),
+            );
+            let named =
+                several.offers.iter().take(MOST_LISTED).any(|offer| offer.key.parse::<usize>().is_err());
+            if named {
+                let keys = several.offers.iter().take(MOST_LISTED).map(|offer| offer.key.as_str());
+                format!("{plural} ({option} {})", keys.collect::<Vec<_>>().join(", "))
+            } else {
+                format!("{plural} ({option} 0 to {last})")
+            }
+        });
+        let components = held.components.map(|components| {
+            format!("components (--component 0 to {})", components.count.saturating_sub(1))
+        });
+        let there: Vec<String> = several.chain(components).collect();
+        let (option, plural) = (aspect.option(), aspect.plural());
+        let help = if there.is_empty() {
+            format!("it holds one volume: leave {option} out")
+        } else {
+            format!("leave {option} out; it has {}", there.join(" and "))
+        };
+        let why = format!("{} is named, and it has no {plural} to choose from", quoted(&said));
+        Err(self.bad_input(option, why, help))
     }
 
     /// The region that is asked for is empty, or reaches beyond the grid.

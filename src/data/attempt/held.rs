@@ -30,6 +30,22 @@ impl Aspect {
         matches!(self, Self::Of(Dimension::Frame) | Self::Component)
     }
 
+    /// The option of the command line that chooses.
+    pub fn option(self) -> &'static str {
+        match self {
+            Self::Of(dimension) => dimension.option(),
+            Self::Component => "--component",
+        }
+    }
+
+    /// Several of them, in words.
+    pub fn plural(self) -> &'static str {
+        match self {
+            Self::Of(dimension) => dimension.plural(),
+            Self::Component => "components",
+        }
+    }
+
     /// Its place in [`Self::ALL`].
     pub fn index(self) -> usize {
         Self::ALL.iter().position(|&other| other == self).unwrap_or_default()
@@ -101,6 +117,8 @@ pub struct Watch(Arc<Mutex<Seen>>);
 struct Seen {
     held: Held,
     is_averaged: bool,
+    /// Aspects that a reader has asked the choice for, of several volumes or of one.
+    asked: Vec<Aspect>,
 }
 
 /// Only a watch itself is the same.
@@ -121,6 +139,18 @@ impl Watch {
     /// Whether blocks were averaged while they were read.
     pub(in crate::data) fn has_averaged(&self) -> bool {
         self.seen().is_averaged
+    }
+
+    /// True where a reader has asked which of them is meant.
+    pub(super) fn was_asked(&self, aspect: Aspect) -> bool {
+        self.seen().asked.contains(&aspect)
+    }
+
+    pub(super) fn asks(&self, aspect: Aspect) {
+        let asked = &mut self.seen().asked;
+        if !asked.contains(&aspect) {
+            asked.push(aspect);
+        }
     }
 
     fn seen(&self) -> MutexGuard<'_, Seen> {

@@ -88,6 +88,7 @@ pub fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result
         // Whatever became of it.
         control.check()?;
         let volume = volume?;
+        Attempt { what: "open the volume", path }.refuse_unasked(&options.choice, &watch)?;
         let volume = volume.with_held(Held { portion, ..watch.held() });
         Ok::<_, LoadError>((watch.has_averaged() && volume.is_of_labels(), volume))
     };
@@ -107,6 +108,14 @@ fn load_watched(path: &Path, options: &LoadOptions, control: &LoadControl) -> Re
     let mut input = Input::open(attempt)?;
     let witness = Witness::of(attempt, &input)?;
     let start = Start::of(&mut input).map_err(|error| attempt.io(error))?;
+    // Voxels that somebody describes may begin like that by chance.
+    if start.is_packed_twice() && options.raw.dims.is_none() {
+        return Err(attempt.bad_input(
+            "format",
+            "it is compressed twice: what is in the gzip file is a gzip file again",
+            "unpack it once, with gunzip for example, and open what comes out",
+        ));
+    }
     let Some(reader) = reader_of(path, &start, options) else {
         let names: Vec<&str> = READERS.iter().map(|reader| reader.name).collect();
         return Err(attempt.bad_input(

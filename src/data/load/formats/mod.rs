@@ -35,6 +35,7 @@ pub(super) const READERS: &[Reader] = &[
     metaimage::READER,
     dicom::READER,
     tiff::READER,
+    tiff::COMPANION,
     slices::READER,
     vtk::XML,
     vtk::LEGACY,

@@ -1,7 +1,9 @@
 //! Where a file is that another file names: below that one's folder, or nowhere.
 //!
 //! A header comes from anywhere and names a path. Following it without a check would open private
-//! files, devices, or, on Windows, a foreign server that then learns the user's password hash.
+//! files, devices, or, on Windows, a foreign server that then learns the user's password hash. An archive can bring links
+//! as well as headers, so that these lead no further: within the folder, within the folder that a header lies in which is
+//! a link itself, and to where git-annex, `DataLad` and DVC keep the files of the repository that the folder is in.
 
 use std::path::{Path, PathBuf};
 
@@ -18,6 +20,8 @@ const MOST_NAME_BYTES: usize = 1024;
 /// # Errors
 /// `BadInput` for every name that leads out of the header's folder, by its text or over symbolic links; `Io` when there
 /// is no such file.
+///
+/// The path goes through the header's folder: a link keeps the name that the header has for it.
 pub(in crate::data::load) fn resolve(
     attempt: Attempt<'_>,
     field: &str,
@@ -30,26 +34,60 @@ pub(in crate::data::load) fn resolve(
             "put the data file beside the header and write its bare name",
         ));
     }
-    let parent = attempt.path.parent().filter(|parent| !parent.as_os_str().is_empty());
-    let folder = parent.unwrap_or(Path::new(".")).canonicalize().map_err(|error| attempt.io(error))?;
-    let beside = folder.join(name);
+    let folder = folder_of(attempt.path).canonicalize().map_err(|error| attempt.io(error))?;
+    // Where the header is a link, its data may lie beside the link or beside the file that it leads to.
+    let header = attempt.path.canonicalize().ok();
+    let own = header.as_deref().map_or(folder.as_path(), folder_of);
+    let is_there = |folder: &&Path| folder.join(name).symlink_metadata().is_ok();
+    let from = [folder.as_path(), own].into_iter().find(is_there).unwrap_or(&folder);
+    let beside = from.join(name);
     let what = format!("find the volume's data file {}", quoted(name));
     let of_data = Attempt { what: &what, path: &beside };
-    let path = beside.canonicalize().map_err(|error| of_data.io(error))?;
-    // By component: as strings, /data would also contain /database.
-    if path.starts_with(&folder) {
-        if path.is_dir() {
-            let why = format!("{} is a folder", quoted(name));
-            return Err(attempt.bad_input(field, why, "write the name of the data file"));
+    let path = beside.canonicalize().map_err(|error| match beside.symlink_metadata() {
+        Ok(_) if error.kind() == std::io::ErrorKind::NotFound => {
+            of_data.not_a_file(LOST_LINK, LOST_LINK_HELP)
         }
-        Ok(path)
-    } else {
-        Err(attempt.bad_input(
+        _ => of_data.io(error),
+    })?;
+    // By component: as strings, /data would also contain /database.
+    let is_inside = |folder: &Path| path.starts_with(folder);
+    if !is_inside(&folder) && !is_inside(own) && !is_in_store(&path, &folder) {
+        return Err(attempt.bad_input(
             field,
             format!("{} is a link that leads out of the header's folder", quoted(name)),
-            "copy the data file beside the header",
-        ))
+            "copy the data file beside the header, or open the header that lies beside it",
+        ));
     }
+    if path.is_dir() {
+        let why = format!("{} is a folder", quoted(name));
+        return Err(attempt.bad_input(field, why, "write the name of the data file"));
+    }
+    Ok(beside)
+}
+
+/// Words for a link whose file is not there, as git-annex leaves it before the file is fetched.
+pub(crate) const LOST_LINK: &str = "it is a link to a file that is not there";
+pub(crate) const LOST_LINK_HELP: &str =
+    "fetch the file that it leads to (datalad get, git annex get, dvc pull), or copy it here";
+
+/// Folder of a file.
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// True where a file, without links in its path, lies where git-annex (`DataLad`) or DVC keep the files of a repository that a
+/// folder is in.
+///
+/// See <https://git-annex.branchable.com/internals/> and <https://dvc.org/doc/user-guide/project-structure/internal-files>.
+fn is_in_store(path: &Path, folder: &Path) -> bool {
+    let within = |root: &Path| {
+        let Ok(rest) = path.strip_prefix(root) else { return false };
+        // A repository within another one has its store below `.git/modules` of that.
+        let names: Vec<_> = rest.iter().collect();
+        let has_objects = names.windows(2).any(|pair| pair[0] == "annex" && pair[1] == "objects");
+        (rest.starts_with(".git") && has_objects) || rest.starts_with(".dvc/cache")
+    };
+    folder.ancestors().any(within)
 }
 
 /// How a name leaves the header's folder, as far as its text shows.

@@ -5,6 +5,7 @@ use std::io::{self, BufRead as _, BufReader, Seek as _, SeekFrom};
 use std::path::Path;
 use std::time::SystemTime;
 
+use super::beside::{LOST_LINK, LOST_LINK_HELP};
 use super::read_files::note;
 use super::{LoadControl, LoadError};
 use crate::data::attempt::Attempt;
@@ -37,7 +38,15 @@ impl Input {
                 )
             }
         };
-        let file_type = fs::metadata(attempt.path).map_err(io)?.file_type();
+        let file_type = match fs::metadata(attempt.path) {
+            Ok(metadata) => metadata.file_type(),
+            Err(error)
+                if error.kind() == io::ErrorKind::NotFound && fs::symlink_metadata(attempt.path).is_ok() =>
+            {
+                return Err(attempt.not_a_file(LOST_LINK, LOST_LINK_HELP));
+            }
+            Err(error) => return Err(io(error)),
+        };
         if !file_type.is_file() {
             return Err(refuse(file_type));
         }

@@ -3,8 +3,7 @@
 use std::io::{self, BufReader, Read, Seek as _};
 use std::path::Path;
 
-use flate2::bufread::MultiGzDecoder;
-
+use super::content::members::GzipMembers;
 use super::input::{Input, is_gzip, most_inflated};
 use super::number::{Part, Stored};
 use super::samples::{Fault, Layout, fill, is_corruption, skip_bytes};
@@ -24,7 +23,7 @@ const MOST_OFFERS: u64 = 1 << 16;
 pub(in crate::data::load) enum After {
     /// Anything.
     More,
-    /// The end of the content. Of compressed content the checksum is then looked at as well.
+    /// The end of the content.
     End,
 }
 
@@ -56,7 +55,7 @@ impl Source<'_> {
     /// Whoever reads it takes no more than was announced: a compressed file may hold anything.
     pub(in crate::data::load) fn content(&mut self) -> Box<dyn Read + '_> {
         if self.start.is_gzip() {
-            Box::new(BufReader::new(MultiGzDecoder::new(&mut self.input.reader)))
+            Box::new(BufReader::new(GzipMembers::new(&mut self.input.reader)))
         } else {
             Box::new(&mut self.input.reader)
         }
@@ -108,7 +107,8 @@ impl Source<'_> {
                 return Err(Fault::Short { got: 0 });
             }
             let voxels = stored.read(&mut content, extent, control)?;
-            if after == After::End && fill(&mut content, &mut [0], control)? > 0 {
+            // Also makes the decoder look at the checksum, where nothing else follows.
+            if fill(&mut content, &mut [0], control)? > 0 && after == After::End {
                 return Err(Fault::Long);
             }
             Ok(voxels)
@@ -176,7 +176,7 @@ impl Start {
         let inflated = is_gzip(&stored).then(|| {
             let mut found = Vec::new();
             // What is broken, or cut off where the look ends, says what it says until there.
-            let mut decoder = MultiGzDecoder::new(&mut input.reader).take(START_BYTES as u64);
+            let mut decoder = GzipMembers::new(&mut input.reader).take(START_BYTES as u64);
             let _how_far = decoder.read_to_end(&mut found);
             found
         });
@@ -197,6 +197,11 @@ impl Start {
     /// Whether the file is compressed as a whole.
     pub(in crate::data::load) fn is_gzip(&self) -> bool {
         self.inflated.is_some()
+    }
+
+    /// True where the content of a compressed file is compressed once more.
+    pub(crate) fn is_packed_twice(&self) -> bool {
+        self.inflated.as_deref().is_some_and(is_gzip)
     }
 
     /// Whether the content has some bytes at a place.

@@ -1,6 +1,7 @@
 //! RAW files and dispatch, from the outside: what is read and what is refused.
 
 mod cancelling;
+mod choices;
 mod portions;
 pub(super) mod shared;
 
@@ -129,6 +130,10 @@ fn gzip_is_recognised_by_its_content() {
     // Voxels that look like gzip's magic.
     let path = write(&folder, "c_4x1x1_uint8.raw", &[0x1f, 0x8b, 8, 0]);
     assert_eq!(load_as(&path, RawFormat::default()).unwrap().value(1, 0, 0), 139.0);
+    // Bytes behind a whole stream are none of its own.
+    let padded = [gzip(&voxels), vec![0; 4096]].concat();
+    let path = write(&folder, "p_4x4x4_uint8.raw.gz", &padded);
+    assert_eq!(*load_as(&path, RawFormat::default()).unwrap().samples(), Samples::U8(voxels.clone()));
     // The offset counts inflated bytes; several members are one stream.
     let mut members = gzip(&[9, 9, 1]);
     members.extend(gzip(&[2, 3, 4]));

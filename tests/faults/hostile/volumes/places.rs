@@ -45,6 +45,13 @@ pub(super) fn add(made: &mut Maker, forbidden: &Path) {
                 ),
             ),
             (
+                "companion.ome",
+                format!(
+                    "<OME><Image><Pixels SizeX=\"8\" SizeY=\"8\" SizeZ=\"1\" SizeC=\"1\" SizeT=\"1\"><TiffData><UUID \
+                     FileName=\"{escaped}\">urn:uuid:1</UUID></TiffData></Pixels></Image></OME>"
+                ),
+            ),
+            (
                 "vti",
                 format!(
                     "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 7 0 7 0 7\"><Piece Extent=\"0 7 0 7 0 7\" \

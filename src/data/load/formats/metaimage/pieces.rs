@@ -4,8 +4,9 @@ use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::vec;
 
-use flate2::bufread::{MultiGzDecoder, ZlibDecoder};
+use flate2::bufread::ZlibDecoder;
 
+use super::super::content::members::GzipMembers;
 use super::super::input::{Input, Witness, is_gzip};
 use super::super::samples::{Fault, fill, skip_bytes};
 use super::super::text_numbers::TextNumbers;
@@ -92,7 +93,7 @@ impl Pieces {
                 for name in &names[first as usize..=last as usize] {
                     control.check()?;
                     let path = beside::resolve(attempt, DATA_FILE, name)?;
-                    if path == attempt.path.canonicalize().unwrap_or_default() {
+                    if path.canonicalize().ok() == attempt.path.canonicalize().ok() {
                         return Err(attempt.bad_input(
                             DATA_FILE,
                             format!("{} is the header itself", quoted(name)),
@@ -168,11 +169,8 @@ impl Pieces {
             let is_gzip = is_gzip(&magic);
             let source = BufReader::new(io::Cursor::new(magic).chain(source));
             // The definition says zlib; what reads it everywhere takes gzip as well.
-            reader = if is_gzip {
-                Box::new(MultiGzDecoder::new(source))
-            } else {
-                Box::new(ZlibDecoder::new(source))
-            };
+            reader =
+                if is_gzip { Box::new(GzipMembers::new(source)) } else { Box::new(ZlibDecoder::new(source)) };
         }
         if self.storage.is_text {
             let number = self.storage.stored.number;

@@ -227,3 +227,21 @@ fn headers_that_lie_are_refused() {
             || error.to_string().contains("no header")
     );
 }
+
+#[test]
+fn bytes_behind_a_packed_map_are_passed_over_and_checksums_looked_at() {
+    let made = Made::new(0, false, vec![1, 2, 3, 4]);
+    let packed = gzip(&made.bytes());
+    let whole = made.loaded();
+    for behind in [vec![0; 1024], vec![0xAA; 3]] {
+        let volume = load_bytes("a.mrc.gz", &[&packed[..], &behind].concat(), Choice::default()).unwrap();
+        assert_eq!(volume.samples(), whole.samples());
+    }
+    let mut changed = packed.clone();
+    let checksum = changed.len() - 8;
+    changed[checksum] ^= 1;
+    for broken in [&changed[..], &packed[..packed.len() - 3]] {
+        let error = load_bytes("a.mrc.gz", broken, Choice::default()).unwrap_err();
+        assert_eq!(error.kind(), LoadErrorKind::BadInput, "{error}");
+    }
+}

@@ -4,9 +4,7 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
-use bzip2::bufread::MultiBzDecoder;
-use flate2::bufread::MultiGzDecoder;
-
+use super::super::content::members::{Bzip2Members, GzipMembers};
 use super::super::input::{Input, Witness, most_inflated};
 use super::super::sieve::leap_in_file;
 use super::super::text_numbers::TextNumbers;
@@ -250,8 +248,8 @@ fn decoded(
     // The skipped bytes of compressed data are counted after inflating.
     let mut decoder = match storage.encoding {
         Encoding::Raw => Stream::Plain(reader),
-        Encoding::Gzip => Stream::Decoded(Box::new(MultiGzDecoder::new(reader))),
-        Encoding::Bzip2 => Stream::Decoded(Box::new(MultiBzDecoder::new(reader))),
+        Encoding::Gzip => Stream::Decoded(Box::new(GzipMembers::new(reader))),
+        Encoding::Bzip2 => Stream::Decoded(Box::new(Bzip2Members::new(reader))),
         Encoding::Hex | Encoding::Text => {
             let mut reader = reader;
             skip_bytes(attempt, storage.encoding, &mut reader, skip, control)?;

@@ -1,12 +1,13 @@
 //! Which axes are the volume's, what the others hold, and where the volume lies in the world.
 //!
 //! `dimension`, `sizes`, `kinds`, `spacings`, `space`, `space dimension`, `space directions`,
-//! `space origin`, `units` and `space units`. The world is right-anterior-superior millimetres.
+//! `space origin`, `axis mins`, `axis maxs`, `centers`, `units` and `space units`. The world is right-anterior-superior millimetres.
 
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::super::LoadError;
 use super::super::placement::Placement;
+use super::bounds::AxisBounds;
 use super::header::Header;
 use super::space::{counts_voxels, directions, flips, is_anatomical, mm_per_unit, origin};
 use crate::data::attempt::{Attempt, quoted};
@@ -51,6 +52,8 @@ pub(super) struct Geometry {
     pub(super) is_color: bool,
     /// Whether those numbers are time steps, and not components.
     pub(super) are_times: bool,
+    /// True where the header calls them a list: volumes of their own, unless they are layers of labels.
+    pub(super) are_listed: bool,
     /// Volumes behind each other.
     pub(super) frames: u64,
     /// Of all axes.
@@ -68,6 +71,8 @@ struct Axis {
     direction_mm: Option<DVec3>,
     /// The distance of its samples in millimetres; NaN where it is not known.
     spacing_mm: f64,
+    /// Place of its first sample in millimetres, by its bounds; 0 where they are not known.
+    first_mm: f64,
 }
 
 impl Axis {
@@ -117,6 +122,7 @@ impl Geometry {
             are_planes,
             is_color: before.iter().any(|axis| COLORS.contains(&axis.kind.as_str())),
             are_times: before.iter().any(|axis| axis.kind == "time"),
+            are_listed: !before.is_empty() && before.iter().all(|axis| axis.kind == "list"),
             frames,
             sizes,
         })
@@ -127,6 +133,7 @@ impl Geometry {
 fn placement(attempt: Attempt<'_>, header: &Header, axes: &[&Axis]) -> Result<Placement, LoadError> {
     let ras_from_file = DMat3::from_diagonal(flips(attempt, header)?);
     let origin_mm = origin(attempt, header)? * mm_per_unit(header, "space units").unwrap_or(1.0);
+    let has_origin = header.get("space origin").is_some();
     let is_anatomical = is_anatomical(header);
     let has_directions = axes.iter().any(|axis| axis.direction_mm.is_some());
     if !has_directions && axes.iter().all(|axis| axis.spacing_mm.is_nan()) {
@@ -140,6 +147,8 @@ fn placement(attempt: Attempt<'_>, header: &Header, axes: &[&Axis]) -> Result<Pl
         let thickness = || axes.iter().map(|axis| axis.spacing_mm.abs()).product::<f64>().sqrt();
         let spacings = [0, 1, 2].map(|axis| spacing(axis).unwrap_or_else(thickness));
         let spaced = Placement::spaced(spacings);
+        let first_mm = |axis: usize| axes.get(axis).map_or(0.0, |axis| axis.first_mm);
+        let origin_mm = if has_origin { origin_mm } else { DVec3::from_array([0, 1, 2].map(first_mm)) };
         let world_from_index = DAffine3 {
             matrix3: ras_from_file * spaced.world_from_index.matrix3,
             translation: ras_from_file * origin_mm,
@@ -177,6 +186,16 @@ fn axes(attempt: Attempt<'_>, header: &Header) -> Result<Vec<Axis>, LoadError> {
     header.require(attempt, "sizes", "add the number of samples along each axis")?;
     let sizes: Vec<u64> = numbers(attempt, header, "sizes", dimension)?.unwrap_or_default();
     let spacings: Option<Vec<f64>> = numbers(attempt, header, "spacings", dimension)?;
+    // Older headers say where an axis begins and ends.
+    let bounds = |field: &str| match numbers::<f64>(attempt, header, field, dimension) {
+        Ok(bounds) => bounds,
+        Err(error) => {
+            attempt.warn(format_args!("{field} is not used: {error}"));
+            None
+        }
+    };
+    let (mins, maxs) = (bounds("axis mins"), bounds("axis maxs"));
+    let centers: Vec<_> = header.either("centers", "centerings").split_whitespace().collect();
     let directions = directions(attempt, header, dimension)?;
     let kinds: Vec<_> = header.get("kinds").unwrap_or_default().split_whitespace().collect();
     let space_unit_mm = mm_per_unit(header, "space units").unwrap_or(1.0);
@@ -188,8 +207,17 @@ fn axes(attempt: Attempt<'_>, header: &Header) -> Result<Vec<Axis>, LoadError> {
             let kind = kinds.get(i).map(|kind| kind.to_lowercase()).unwrap_or_default();
             let kind_is_spatial = !OTHER_KINDS.iter().any(|other| kind.ends_with(other));
             let spatial = kind_is_spatial && (directions.is_none() || direction_mm.is_some());
-            let spacing_mm = spacings.as_ref().map_or(f64::NAN, |all| all[i] * axis_unit_mm);
-            Axis { size: sizes[i], kind, spatial, direction_mm, spacing_mm }
+            let bound = |all: &Option<Vec<f64>>| all.as_ref().map_or(f64::NAN, |all| all[i]);
+            let bounds = AxisBounds {
+                low: bound(&mins),
+                high: bound(&maxs),
+                is_node: centers.get(i).is_some_and(|center| center.eq_ignore_ascii_case("node")),
+            };
+            let between = bounds.spacing(sizes[i]);
+            let spacing = Some(bound(&spacings)).filter(|spacing| !spacing.is_nan()).unwrap_or(between);
+            let (spacing_mm, first_mm) =
+                (spacing * axis_unit_mm, bounds.first_sample(spacing) * axis_unit_mm);
+            Axis { size: sizes[i], kind, spatial, direction_mm, spacing_mm, first_mm }
         })
         .collect())
 }

@@ -69,6 +69,11 @@ impl Header {
         self.fields.get(&key(name)).map(String::as_str)
     }
 
+    /// The value of a field that has two names; nothing where the header has neither.
+    pub(super) fn either(&self, name: &str, other: &str) -> &str {
+        self.get(name).or_else(|| self.get(other)).unwrap_or_default()
+    }
+
     /// The value of a key, if the header has it; in any case of letters.
     pub(super) fn get_key(&self, name: &str) -> Option<&str> {
         self.keys.get(&name.to_lowercase()).map(String::as_str)

@@ -2,8 +2,10 @@
 //!
 //! After the definition at <https://teem.sourceforge.net/nrrd/format.html>, versions 1 to 5. World space is
 //! right-anterior-superior millimetres. An axis that is none of space is one of components where it is the fastest,
-//! and one of time steps where it is the slowest, unless its kind says that it is one of components.
+//! and one of time steps where it is the slowest, unless its kind says that it is one of components; an axis of kind
+//! `list` holds volumes, wherever it stands.
 
+mod bounds;
 mod data;
 mod files;
 mod geometry;
@@ -124,7 +126,11 @@ fn chosen(
     options: &LoadOptions,
 ) -> Result<(u64, Part), LoadError> {
     let components = geometry.components;
-    let times = if geometry.are_times { components as u64 } else { geometry.frames };
+    // Volumes whose numbers lie beside each other.
+    let are_woven = geometry.are_times || (geometry.are_listed && !is_layered);
+    // With time steps behind them, those of a list are channels.
+    let are_channels = are_woven && geometry.are_listed && geometry.frames > 1;
+    let times = if are_woven && !are_channels { components as u64 } else { geometry.frames };
     if times > MOST_FRAMES || (geometry.are_times && geometry.frames > 1) {
         return Err(attempt.limit(
             "sizes",
@@ -132,12 +138,16 @@ fn chosen(
             "extract some time steps (for example: unu crop)",
         ));
     }
+    let offers = |count: usize| (0..count).map(|step| Offer::numbered(step, "", geometry.dims)).collect();
     let mut frame = 0;
     if times > 1 {
-        let offers = (0..times as usize).map(|step| Offer::numbered(step, "", geometry.dims)).collect();
-        frame = attempt.chosen(&options.choice, Dimension::Frame, offers)?;
+        frame = attempt.chosen(&options.choice, Dimension::Frame, offers(times as usize))?;
     }
-    if geometry.are_times {
+    if are_channels {
+        let channel = attempt.chosen(&options.choice, Dimension::Channel, offers(components))?;
+        return Ok((frame as u64, Part::Component(channel)));
+    }
+    if are_woven {
         return Ok((0, Part::Component(frame)));
     }
     // Programs that know no colours write them as vectors of bytes.

@@ -68,6 +68,16 @@ impl Grid {
     }
 }
 
+impl Grid {
+    /// True for numbers that look as if they belonged to something else, in an array of so many axes: fewer than 16 along
+    /// one of two are an affine, a matrix or a list of points; 2 by 2 to 4 by 4 of more are matrices in a row.
+    pub(super) fn is_table(&self, axes: usize) -> bool {
+        const FEWEST_PIXELS: u64 = 16;
+        let [x, y, _] = self.dims;
+        if axes == 2 { x < FEWEST_PIXELS || y < FEWEST_PIXELS } else { x == y && (2..=4).contains(&x) }
+    }
+}
+
 /// The number type of a code, its byte order, and how many of them an element has.
 fn number_of(descr: &str) -> Option<(Number, Endian, usize)> {
     let (endian, code) = match descr.split_at_checked(1)? {

@@ -116,7 +116,14 @@ fn load_archive(mut source: Source<'_>) -> Result<Volume, LoadError> {
             Err(error) => refused.push(error),
         }
     }
-    // Vectors and tables beside a volume are not offered; where there is nothing else, why they are no volumes counts.
+    // Beside a volume, matrices and tables are no pictures: an affine, directions, a list of points. One that is named is
+    // meant.
+    let named = source.options.choice.array.as_deref();
+    let is_table = |header: &Header, grid: &Grid| grid.is_table(header.shape.len());
+    if arrays.iter().any(|(_, header, grid)| !is_table(header, grid)) {
+        arrays.retain(|(entry, header, grid)| !is_table(header, grid) || named == Some(key(entry).as_str()));
+    }
+    // Vectors beside a volume are not offered either; where there is nothing else, why they are no volumes counts.
     if arrays.is_empty() {
         let count = refused.len();
         return Err(match refused.pop() {
@@ -129,7 +136,7 @@ fn load_archive(mut source: Source<'_>) -> Result<Volume, LoadError> {
         });
     }
     let offers = arrays.iter().map(|(entry, _, grid)| {
-        let key = plain(entry.name.trim_end_matches(ENDING), 80);
+        let key = key(entry);
         Offer { name: key.clone(), key, dims: Some(grid.dims) }
     });
     let chosen = attempt.chosen(&source.options.choice, Dimension::Array, offers.collect())?;
@@ -139,6 +146,11 @@ fn load_archive(mut source: Source<'_>) -> Result<Volume, LoadError> {
     let Wanted { extent, placement, .. } = wanted;
     let name = plain(&format!("{} {}", stem(source.path), entry.name.trim_end_matches(ENDING)), 120);
     Parts { name, extent, placement, voxels, hints: Hints::default() }.volume(attempt)
+}
+
+/// By what an array is chosen: its name.
+fn key(entry: &Entry) -> String {
+    plain(entry.name.trim_end_matches(ENDING), 80)
 }
 
 /// Reads what is wanted of an entry of an archive.

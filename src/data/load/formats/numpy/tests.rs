@@ -226,6 +226,30 @@ fn archives_are_read_however_they_are_written() {
 }
 
 #[test]
+fn matrices_and_tables_beside_a_volume_are_no_question() {
+    let data: Vec<u8> = (0..240).collect();
+    let volume = array("|u1", "False", "(6, 5, 8)", &data);
+    let affine = array("<f8", "False", "(4, 4)", &[0; 128]);
+    let poses = array("<f4", "False", "(9, 3, 3)", &[0; 324]);
+    let points = array("<f4", "False", "(100, 3)", &[0; 1200]);
+    let picture = array("|u1", "False", "(16, 20)", &[1; 320]);
+    let write = |files: &[(&str, &[u8])]| archive(files, [true, false, false]);
+    let files =
+        [("data.npy", &volume[..]), ("affine.npy", &affine), ("poses.npy", &poses), ("points.npy", &points)];
+    let found = loaded(&write(&files)).unwrap();
+    assert_eq!((found.dims(), found.samples()), ([8, 5, 6], &Samples::U8(data)));
+    let named = |name: &str| Choice { array: Some(name.to_owned()), ..Choice::default() };
+    let found = loaded_as("a.npz", &write(&files), named("affine")).unwrap();
+    assert_eq!(found.dims(), [4, 4, 1], "what is named is meant");
+    let unknown = loaded_as("a.npz", &write(&files), named("mask")).unwrap_err();
+    assert!(unknown.to_string().contains("\"mask\" is none"), "{unknown}");
+    // Pictures are offered, and tables where there is nothing else.
+    let error = loaded(&write(&[("data.npy", &volume), ("image.npy", &picture)])).unwrap_err();
+    assert!(matches!(error, LoadError::Several { offers, .. } if offers.len() == 2));
+    assert_eq!(loaded(&write(&[("affine.npy", &affine)])).unwrap().dims(), [4, 4, 1]);
+}
+
+#[test]
 fn archives_that_lie_are_refused() {
     let volume = array("|u1", "False", "(6, 5, 8)", &[7; 240]);
     let table = array("<f8", "False", "(3,)", &[0; 24]);

@@ -5,8 +5,7 @@ use std::io::{self, BufReader, Read as _, Seek as _, SeekFrom};
 use std::path::Path;
 use std::sync::Arc;
 
-use flate2::bufread::MultiGzDecoder;
-
+use super::super::content::members::GzipMembers;
 use super::super::input::is_gzip;
 
 /// Bytes of a compressed file that are inflated: at about 300 MB/s they take a tenth of a second, and they hold 100
@@ -15,6 +14,9 @@ const INFLATED: u64 = 24 << 20;
 
 /// Files up to this length are read at once: less work than a few hundred small reads.
 const SMALL: u64 = 8 << 20;
+
+/// Bytes at the end of a compressed file that are searched for its length: blocks of tapes have 64 KiB mostly.
+const PADDING: u64 = 1 << 18;
 
 /// What there is of the bytes.
 #[derive(Debug)]
@@ -63,14 +65,17 @@ impl RawBytes {
         Ok(Self::from(all))
     }
 
-    /// The start of a compressed file. How long all of it is say its last four bytes, modulo 2^32 (RFC 1952).
+    /// The start of a compressed file. How long all of it is say its last four bytes, modulo 2^32 (RFC 1952). Where zeros
+    /// fill the file up they lie before these: of so long a file the last of the four is hardly zero itself.
     fn inflate(mut file: File, file_bytes: u64) -> io::Result<Self> {
-        let mut said = [0; 4];
-        file.seek(SeekFrom::Start(file_bytes.saturating_sub(4)))?;
-        read_full(&mut file, &mut said)?;
+        let mut end = vec![0; PADDING.min(file_bytes) as usize];
+        file.seek(SeekFrom::Start(file_bytes - end.len() as u64))?;
+        read_full(&mut file, &mut end)?;
+        end.truncate(end.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1));
+        let said = end.last_chunk::<4>().copied().unwrap_or_default();
         file.seek(SeekFrom::Start(0))?;
         let mut start = Vec::new();
-        let mut inflated = MultiGzDecoder::new(BufReader::with_capacity(1 << 18, file)).take(INFLATED);
+        let mut inflated = GzipMembers::new(BufReader::with_capacity(1 << 18, file)).take(INFLATED);
         // What comes before damage can be shown all the same.
         let is_whole = inflated.read_to_end(&mut start).is_ok() && (start.len() as u64) < INFLATED;
         let readable = start.len() as u64;

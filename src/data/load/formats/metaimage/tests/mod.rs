@@ -250,3 +250,14 @@ fn long_text_is_read_across_blocks() {
     let fields = ["ElementType = MET_USHORT", "DimSize = 1000 400 1", "BinaryData = False"];
     assert_eq!(*read(&fields, text.as_bytes()).samples(), Samples::U16(numbers));
 }
+
+#[test]
+fn bytes_behind_packed_data_are_passed_over() {
+    for packed in [zlib(&VOXELS), gzip(&VOXELS)] {
+        let padded = [&packed[..], &[0; 512], b"junk"].concat();
+        let volume = read(&["CompressedData = True"], &padded);
+        assert_eq!(*volume.samples(), Samples::U8(VOXELS.to_vec()));
+        let cut = load_local(&["CompressedData = True"], &packed[..packed.len() - 5], Choice::default());
+        assert_refused(cut, LoadErrorKind::BadInput, &["broken or truncated"]);
+    }
+}

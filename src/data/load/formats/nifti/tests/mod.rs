@@ -164,3 +164,30 @@ fn values_are_scaled_where_a_slope_is_said() {
         assert_eq!(scaled(slope, intercept), Samples::I16(vec![0, 2, -1]), "{slope} {intercept}");
     }
 }
+
+#[test]
+fn bytes_behind_a_packed_file_are_passed_over() {
+    let whole = nifti(&[3, 1, 1], 2).with(&[1, 2, 3]);
+    let packed = gzip(&whole);
+    let halves = [gzip(&whole[..200]), gzip(&whole[200..])].concat();
+    for behind in [vec![0; 512], b"-- passed on by a gateway".to_vec(), vec![0x1f], vec![0x1f, 0x8b]] {
+        for packed in [&packed, &halves] {
+            let volume = read(&[&packed[..], &behind].concat());
+            assert_eq!(*volume.samples(), Samples::U8(vec![1, 2, 3]), "{behind:?}");
+        }
+    }
+    for end in [packed.len() - 1, packed.len() - 9] {
+        let cut = load_bytes(&packed[..end], Choice::default());
+        assert_refused(cut, LoadErrorKind::BadInput, &["truncated"]);
+    }
+    let mut changed = [&packed[..], &[0; 512]].concat();
+    changed[packed.len() - 6] ^= 1;
+    assert_refused(load_bytes(&changed, Choice::default()), LoadErrorKind::BadInput, &["broken"]);
+}
+
+#[test]
+fn what_is_packed_twice_is_called_so() {
+    let twice = gzip(&gzip(&nifti(&[3, 1, 1], 2).with(&[1, 2, 3])));
+    let refused = shared::load_bytes("v.nii.gz", &twice, Choice::default());
+    assert_refused(refused, LoadErrorKind::BadInput, &["compressed twice", "gunzip"]);
+}

@@ -63,6 +63,53 @@ fn detached_data_elsewhere_are_refused() {
     }
 }
 
+#[cfg(unix)]
+#[test]
+fn links_are_followed_where_repositories_keep_their_files() {
+    use std::os::unix::fs::symlink;
+    let folder = TempDir::new().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let expected = Samples::U8(VOXELS.to_vec());
+    let header = format!("{HEADER}data file: v.raw\n");
+    // As git-annex has it: both are links to where it keeps files by their content.
+    for store in [".git/annex/objects", ".dvc/cache"] {
+        let root = path(&store.replace(['/', '.'], "_"));
+        fs::create_dir_all(root.join(store).join("ab")).unwrap();
+        fs::create_dir_all(root.join("sub/anat")).unwrap();
+        fs::write(root.join(store).join("ab/header"), &header).unwrap();
+        fs::write(root.join(store).join("ab/data"), VOXELS).unwrap();
+        let to = Path::new("../..").join(store);
+        symlink(to.join("ab/header"), root.join("sub/anat/v.nhdr")).unwrap();
+        symlink(to.join("ab/data"), root.join("sub/anat/v.raw")).unwrap();
+        assert_eq!(*load_path(&root.join("sub/anat/v.nhdr")).unwrap().samples(), expected, "{store}");
+        // Not fetched yet.
+        fs::remove_file(root.join(store).join("ab/data")).unwrap();
+        let words = ["link to a file that is not there", "datalad get"];
+        assert_refused(load_path(&root.join("sub/anat/v.nhdr")), LoadErrorKind::Io, &words);
+        fs::remove_file(root.join(store).join("ab/header")).unwrap();
+        assert_refused(load_path(&root.join("sub/anat/v.nhdr")), LoadErrorKind::Io, &words);
+    }
+    // A header that is a link: its data lie beside the link, or beside the file.
+    fs::create_dir_all(path("study")).unwrap();
+    fs::create_dir_all(path("desk")).unwrap();
+    fs::write(path("study/v.nhdr"), &header).unwrap();
+    fs::write(path("study/v.raw"), VOXELS).unwrap();
+    symlink(path("study/v.nhdr"), path("desk/v.nhdr")).unwrap();
+    assert_eq!(*load_path(&path("desk/v.nhdr")).unwrap().samples(), expected);
+    symlink(path("study/v.raw"), path("desk/v.raw")).unwrap();
+    assert_eq!(*load_path(&path("desk/v.nhdr")).unwrap().samples(), expected);
+    // A store that is itself a link is none.
+    fs::create_dir_all(path("hostile/.git/annex")).unwrap();
+    symlink(path("study"), path("hostile/.git/annex/objects")).unwrap();
+    fs::write(path("hostile/v.nhdr"), &header).unwrap();
+    symlink(path("study/v.raw"), path("hostile/v.raw")).unwrap();
+    assert_refused(
+        load_path(&path("hostile/v.nhdr")),
+        LoadErrorKind::BadInput,
+        &["out of the header's folder"],
+    );
+}
+
 #[test]
 fn data_in_several_files_are_put_together() {
     let folder = TempDir::new().unwrap();

@@ -130,6 +130,25 @@ fn times_beside_each_other_are_time_steps_too() {
 }
 
 #[test]
+fn a_list_holds_volumes_wherever_it_stands() {
+    let fields = ["dimension: 4", "sizes: 7 2 2 1", "kinds: list domain domain domain"];
+    let bytes: Vec<u8> = (0..28).collect();
+    let listed = ["7 time steps", "--frame", "6 (2 x 2 x 1)"];
+    assert_refused(load(&fields, &bytes, Choice::default()), LoadErrorKind::BadInput, &listed);
+    for step in 0..7 {
+        let volume = load(&fields, &bytes, frame(step)).unwrap();
+        let expected: Vec<u8> = (0..4).map(|at| 7 * at + step as u8).collect();
+        assert_eq!((volume.dims(), volume.samples()), ([2, 2, 1], &Samples::U8(expected)));
+    }
+    assert_refused(load(&fields, &bytes, component(1)), LoadErrorKind::BadInput, &["7 time steps"]);
+    // With times behind the places it is one of channels.
+    let both = ["dimension: 5", "sizes: 2 2 1 1 3", "kinds: list domain domain domain time"];
+    let choice = Choice { channel: Some(1), ..frame(2) };
+    assert_eq!(*load(&both, &bytes[..12], choice).unwrap().samples(), Samples::U8(vec![9, 11]));
+    assert_refused(load(&both, &bytes[..12], frame(1)), LoadErrorKind::BadInput, &["2 channels"]);
+}
+
+#[test]
 fn segments_in_layers_are_those_of_the_first() {
     let segments = "Segment0_Name:=a\nSegment0_LabelValue:=1\nSegment0_Layer:=0";
     let fields = ["dimension: 4", "sizes: 2 2 2 1", "kinds: list domain domain domain", segments];

@@ -67,6 +67,30 @@ fn spacings_without_a_space_are_used() {
 }
 
 #[test]
+fn ends_of_axes_say_the_distances_of_samples() {
+    let read = |fields: &[&str]| load_attached(&header_with(fields), &VOXELS).unwrap();
+    let bounds = ["axis mins: 0 0 -4", "axismaxs: 1 2 4"];
+    let nodes = read(&[bounds[0], bounds[1], "centers: node node node"]);
+    assert_eq!((nodes.spacing_mm(), nodes.has_unknown_scale()), (DVec3::new(1.0, 2.0, 8.0), false));
+    assert_eq!(nodes.world_from_index().translation, DVec3::new(0.0, 0.0, -4.0));
+    for centers in ["centers: cell cell cell", "centerings: cell cell cell", "number: 8"] {
+        let cells = read(&[bounds[0], bounds[1], centers]);
+        assert_eq!(cells.spacing_mm(), DVec3::new(0.5, 1.0, 4.0), "{centers}");
+        assert_eq!(cells.world_from_index().translation, DVec3::new(0.25, 0.5, -2.0), "{centers}");
+    }
+    let units = "units: \"cm\" \"cm\" \"cm\"";
+    assert_eq!(read(&[bounds[0], bounds[1], units]).spacing_mm(), DVec3::new(5.0, 10.0, 40.0));
+    let spaced = read(&[bounds[0], bounds[1], "spacings: 3 nan 3"]);
+    assert_eq!(spaced.spacing_mm(), DVec3::new(3.0, 1.0, 3.0), "what is said of distances counts more");
+    let squeezed = ["dimension: 4", "sizes: 1 2 2 2", "axis mins: nan 0 0 0", "axis maxs: nan 2 4 6"];
+    assert_eq!(read(&squeezed).spacing_mm(), DVec3::new(1.0, 2.0, 3.0));
+    assert!(read(&["axis mins: 0 0 0"]).has_unknown_scale(), "half of them say nothing");
+    assert!(read(&["axis mins: 0 0", "axis maxs: 1 1 1"]).has_unknown_scale());
+    let lying = read(&["axis mins: 0 0 0", "axis maxs: 0 -2 inf"]);
+    assert_eq!((lying.spacing_mm(), lying.remarks().len()), (DVec3::ONE, 1));
+}
+
+#[test]
 fn distances_that_cannot_be_are_mended_and_said() {
     for (field, taken) in [
         ("spacings: 1 0 2", [1.0, 1.0, 2.0]),

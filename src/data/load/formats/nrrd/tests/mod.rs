@@ -224,6 +224,20 @@ fn data_of_the_wrong_length_are_refused() {
 }
 
 #[test]
+fn bytes_behind_packed_data_are_passed_over() {
+    for (encoding, packed) in [("gzip", gzip(&VOXELS)), ("bzip2", bzip2(&VOXELS))] {
+        let header = header_with(&[&format!("encoding: {encoding}")]);
+        for behind in [vec![0; 512], b"\r\n-- \r\nscanned by a gateway".to_vec()] {
+            let volume = load_attached(&header, &[&packed[..], &behind].concat()).unwrap();
+            assert_eq!(*volume.samples(), Samples::U8(VOXELS.to_vec()), "{encoding}");
+        }
+    }
+    let halves = [gzip(&VOXELS[..3]), vec![0; 100], gzip(&VOXELS[3..]), vec![7]].concat();
+    let volume = load_attached(&header_with(&["encoding: gzip"]), &halves).unwrap();
+    assert_eq!(*volume.samples(), Samples::U8(VOXELS.to_vec()));
+}
+
+#[test]
 fn long_text_is_read_across_blocks() {
     let numbers: Vec<u16> = (0..400_000u32).map(|n| (n * 7919 % 65536) as u16).collect();
     let text = numbers.iter().fold(String::new(), |text, n| text + &n.to_string() + "\n");

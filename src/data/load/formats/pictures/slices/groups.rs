@@ -1,8 +1,9 @@
 //! Which files of a folder are the slices of one volume, by their names.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
+use super::counters::{NameCounter, counters, slice_column};
 use super::picture::Kind;
 
 /// Files that are slices of one volume, by their numbers in the list of all.
@@ -20,11 +21,14 @@ pub(super) struct Group {
 struct Pieces {
     texts: Vec<String>,
     digits: Vec<String>,
+    /// Kind of each of the numbers.
+    counters: Vec<NameCounter>,
 }
 
 impl Pieces {
     fn of(path: &Path) -> Self {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let name = without_mark(&name);
         let (mut texts, mut digits) = (vec![String::new()], Vec::new());
         let mut was_digit = false;
         for c in name.chars() {
@@ -39,7 +43,9 @@ impl Pieces {
             }
             was_digit = is_digit;
         }
-        Self { texts, digits }
+        let counters = counters(texts.iter().take(digits.len()).map(String::as_str));
+        let texts = texts.iter().map(|text| text.to_lowercase()).collect();
+        Self { texts, digits, counters }
     }
 
     /// The name with `#` in place of some of its digits.
@@ -53,7 +59,28 @@ impl Pieces {
     }
 }
 
-/// Sorts pictures, in natural order, into groups: those whose names differ in the last number that counts.
+/// A name without the mark of 32 hexadecimal digits by which some databases keep files apart (RFC 9562, 4): it says nothing.
+fn without_mark(name: &str) -> String {
+    const GROUPS: [usize; 5] = [8, 4, 4, 4, 12];
+    const MARK_BYTES: usize = 36;
+    let is_mark = |mark: &str| {
+        let groups: Vec<&str> = mark.split('-').collect();
+        let is_hex = |group: &&str| group.bytes().all(|byte| byte.is_ascii_hexdigit());
+        groups.len() == GROUPS.len()
+            && groups.iter().zip(GROUPS).all(|(group, length)| group.len() == length)
+            && groups.iter().all(is_hex)
+    };
+    let at = (0..name.len().saturating_sub(MARK_BYTES - 1))
+        .find(|&at| name.get(at..at + MARK_BYTES).is_some_and(is_mark));
+    at.map_or_else(|| name.to_owned(), |at| [&name[..at], &name[at + MARK_BYTES..]].concat())
+}
+
+/// Name with `#` in place of all numbers, which slices have in common.
+pub(super) fn pattern(path: &Path) -> String {
+    Pieces::of(path).name(|_| true)
+}
+
+/// Sorts pictures, in natural order, into groups: those whose names differ in the number that counts slices.
 pub(super) fn groups<'a>(files: impl IntoIterator<Item = (&'a Path, Kind)>) -> Vec<Group> {
     let files: Vec<(Pieces, Kind)> = files.into_iter().map(|(path, kind)| (Pieces::of(path), kind)).collect();
     let alike = gathered((0..files.len()).map(|at| {
@@ -67,17 +94,26 @@ pub(super) fn groups<'a>(files: impl IntoIterator<Item = (&'a Path, Kind)>) -> V
         let varies =
             |column: usize| members.windows(2).any(|pair| digits(pair[0])[column] != digits(pair[1])[column]);
         let varying: Vec<usize> = (0..columns).filter(|&column| varies(column)).collect();
-        let Some((&counted, others)) = varying.split_last() else {
+        let counters = members.first().map_or(&[][..], |&member| &files[member].0.counters);
+        let Some(counted) = slice_column(&varying, counters) else {
             let name = members.first().map_or(String::new(), |&member| files[member].0.name(|_| false));
             groups.push(Group { name, kind, files: members, gap: None });
             continue;
         };
         let parts = gathered(members.iter().map(|&member| {
-            let key: Vec<&str> = others.iter().map(|&column| digits(member)[column].as_str()).collect();
+            let others = varying.iter().filter(|&&column| column != counted);
+            let key: Vec<&str> = others.map(|&column| digits(member)[column].as_str()).collect();
             (key, member)
         }));
-        // Numbers that go on together, as a count and the time of day, count together.
-        let parts = if parts.iter().all(|(_, part)| part.len() > 1) {
+        // Numbers that go on together, as a count and the time of day, count together: one of them alone tells all apart.
+        let tells_all = |&column: &usize| {
+            let numbers: HashSet<&str> =
+                members.iter().map(|&member| digits(member)[column].as_str()).collect();
+            numbers.len() == members.len()
+        };
+        let is_split = parts.iter().all(|(_, part)| part.len() > 1)
+            || !(parts.iter().all(|(_, part)| part.len() == 1) || varying.iter().any(tells_all));
+        let parts = if is_split {
             parts.into_iter().map(|(_, part)| (vec![counted], part)).collect()
         } else {
             vec![(varying.clone(), members)]
@@ -148,10 +184,96 @@ mod tests {
                 vec![group("t1_z#.png", &[0, 1]), group("t2_z#.png", &[2, 3])],
             ),
             (vec!["3d_1_v2.png", "3d_2_v2.png"], vec![group("3d_#_v2.png", &[0, 1])]),
+            (
+                vec!["S1_z00_ch00.png", "S1_z00_ch01.png", "S1_z01_ch00.png", "S1_z01_ch01.png"],
+                vec![group("s1_z#_ch00.png", &[0, 2]), group("s1_z#_ch01.png", &[1, 3])],
+            ),
+            (
+                vec!["S1_z0_ch0.png", "S1_z0_ch1.png", "S1_z1_ch0.png"],
+                vec![group("s1_z#_ch0.png", &[0, 2]), group("s1_z#_ch1.png", &[1])],
+            ),
+            (
+                vec!["001_c1.png", "001_c2.png", "002_c1.png", "002_c2.png"],
+                vec![group("#_c1.png", &[0, 2]), group("#_c2.png", &[1, 3])],
+            ),
+            (
+                vec!["m1_s1.png", "m1_s2.png", "m2_s1.png", "m2_s2.png"],
+                vec![group("m1_s#.png", &[0, 1]), group("m2_s#.png", &[2, 3])],
+            ),
+            (
+                vec!["ch0_01.png", "ch0_02.png", "ch1_03.png", "ch1_04.png"],
+                vec![group("ch0_#.png", &[0, 1]), group("ch1_#.png", &[2, 3])],
+            ),
             (vec!["1_120001.png", "2_120004.png"], vec![group("#_#.png", &[0, 1])]),
             (vec!["one.png"], vec![group("one.png", &[0])]),
         ] {
             assert_eq!(grouped(&names), expected, "{names:?}");
+        }
+    }
+
+    #[test]
+    fn marks_of_databases_say_nothing() {
+        let names: Vec<String> = [("z1", "0A"), ("z2", "9F"), ("z3", "B7")]
+            .map(|(slice, mark)| format!("p_{slice}_w1{}-1111-2222-3333-444455556666.tif", mark.repeat(4)))
+            .to_vec();
+        let found = groups(names.iter().map(|name| (Path::new(name.as_str()), Kind::Tiff)));
+        assert_eq!((found.len(), found[0].name.as_str()), (1, "p_z#_w1.tif"));
+        for name in ["slice-1111-2222-3333-1.png", "é-1.png", "x"] {
+            assert_eq!(without_mark(name), name);
+        }
+    }
+
+    /// All orders of some things.
+    fn orders<T: Clone>(things: &[T]) -> Vec<Vec<T>> {
+        if things.is_empty() {
+            return vec![Vec::new()];
+        }
+        let with = |at: usize| {
+            let mut rest = things.to_vec();
+            let first = rest.remove(at);
+            orders(&rest).into_iter().map(move |rest| [vec![first.clone()], rest].concat())
+        };
+        (0..things.len()).flat_map(with).collect()
+    }
+
+    #[test]
+    fn slices_are_told_in_any_order_of_letters() {
+        // The word of a counter, and how many of it there are; the first counts the slices.
+        let sets: [&[(&str, usize)]; 8] = [
+            &[("z", 8), ("ch", 2)],
+            &[("Z", 3), ("C", 2), ("T", 4)],
+            &[("z", 2), ("w", 3), ("s", 2), ("t", 2)],
+            &[("slice", 5), ("channel", 2), ("time", 2)],
+            &[("", 6), ("ch", 3)],
+            &[("", 6), ("t", 3), ("c", 2)],
+            &[("p", 4), ("f", 2), ("ch", 2), ("sk", 2)],
+            &[("z", 3), ("Series", 2), ("xy", 2)],
+        ];
+        for set in sets {
+            for order in orders(&(0..set.len()).collect::<Vec<_>>()) {
+                for (separator, width) in [("_", 1), ("-", 3), (" ", 2)] {
+                    let mut names = vec!["exp".to_owned()];
+                    for &counter in &order {
+                        let (word, count) = set[counter];
+                        let numbered = |name: &String| {
+                            let name = name.clone();
+                            (0..count).map(move |at| format!("{name}{separator}{word}{at:0width$}"))
+                        };
+                        names = names.iter().flat_map(numbered).collect();
+                    }
+                    let names: Vec<String> = names.into_iter().map(|name| name + ".tif").collect();
+                    let groups = groups(names.iter().map(|name| (Path::new(name.as_str()), Kind::Tiff)));
+                    let (_, slices) = set[0];
+                    let others: usize = set[1..].iter().map(|&(_, count)| count).product();
+                    assert_eq!(groups.len(), others, "{names:?}");
+                    for group in &groups {
+                        assert_eq!((group.files.len(), &group.gap), (slices, &None), "{}", group.name);
+                        assert_eq!(group.name.matches('#').count(), 1, "{}", group.name);
+                        let ordered = group.files.is_sorted();
+                        assert!(ordered && group.name.contains(&format!("{}#", set[0].0.to_lowercase())));
+                    }
+                }
+            }
         }
     }
 

@@ -2,11 +2,13 @@
 //!
 //! PNG (<https://www.w3.org/TR/png-3/>), JPEG (ITU-R T.81), BMP and TIFF. Nothing says how far apart slices are.
 
+mod counters;
 mod groups;
 mod picture;
 #[cfg(test)]
 mod tests;
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
@@ -20,7 +22,7 @@ use crate::data::load::reading::reader::{Reader, Source, Start};
 use crate::data::load::reading::voxels::Meant;
 use crate::data::load::{Dimension, LoadControl, LoadError, LoadOptions, Offer};
 use crate::data::{Hints, Volume, plain};
-use groups::{Group, groups};
+use groups::{Group, groups, pattern};
 use picture::{Header, Kind, look};
 
 /// Series of which the sizes are looked up for the list of them: as many as a screen has lines for.
@@ -53,11 +55,12 @@ pub(in crate::data::load) fn load(
     options: &LoadOptions,
     control: &LoadControl,
 ) -> Result<Option<Volume>, LoadError> {
-    let mut pictures = Vec::new();
+    let (mut pictures, mut others) = (Vec::new(), Vec::new());
     for path in files {
         control.check()?;
-        if let Some(kind) = Kind::of_file(of_slice(path))? {
-            pictures.push((path.as_path(), kind));
+        match Kind::of_file(of_slice(path))? {
+            Some(kind) => pictures.push((path.as_path(), kind)),
+            None => others.push(path.as_path()),
         }
     }
     if pictures.iter().all(|&(_, kind)| kind == Kind::Tiff)
@@ -76,11 +79,14 @@ pub(in crate::data::load) fn load(
     let is_one = groups.len() == 1;
     let offers = offers(&groups, &pictures, options, control);
     let group = groups.swap_remove(attempt.chosen(&options.choice, Dimension::Series, offers)?);
+    remarks.extend(damaged(&others, &group, &pictures));
     let members: Vec<PathBuf> = group.files.iter().map(|&file| pictures[file].0.to_owned()).collect();
     if group.kind == Kind::Tiff
         && let [one] = members.as_slice()
     {
-        return load_tiff(one, options, control).map(Some);
+        let volume = load_tiff(one, options, control)?;
+        let remarks = volume.remarks().iter().cloned().chain(remarks).collect();
+        return Ok(Some(volume.with_remarks(remarks)));
     }
     remarks.extend(group.gap);
     let folder = attempt.path.file_name().unwrap_or_default().to_string_lossy();
@@ -90,6 +96,40 @@ pub(in crate::data::load) fn load(
 
 fn of_slice(path: &Path) -> Attempt<'_> {
     Attempt { what: "read the slice", path }
+}
+
+/// Remark on files that are named like slices of a group, or at least like pictures, and hold none: copies that were
+/// cut off or damaged.
+fn damaged(others: &[&Path], group: &Group, pictures: &[(&Path, Kind)]) -> Option<String> {
+    // As many as a line has room for.
+    const MOST_NAMED: usize = 3;
+    let own = group.files.first().map(|&file| pattern(pictures[file].0));
+    let known: HashSet<String> = pictures.iter().map(|(path, _)| pattern(path)).collect();
+    let is_meant = |path: &&&Path| {
+        let name = pattern(path);
+        Some(&name) == own.as_ref() || (is_named_like_a_picture(path) && !known.contains(&name))
+    };
+    let mut names: Vec<String> = others
+        .iter()
+        .filter(is_meant)
+        .map(|path| quoted(&path.file_name().unwrap_or_default().to_string_lossy()))
+        .collect();
+    let count = names.len();
+    if count > MOST_NAMED {
+        names.truncate(MOST_NAMED);
+        names.push(format!("and {} more", count - MOST_NAMED));
+    }
+    (count > 0).then(|| {
+        let (is, they) =
+            if count == 1 { ("is", "it is no picture") } else { ("are", "they are no pictures") };
+        format!("{} {is} left out: {they}; copy the file again if a slice is missing", names.join(", "))
+    })
+}
+
+fn is_named_like_a_picture(path: &Path) -> bool {
+    let endings = READER.endings.iter().chain(&[".tif", ".tiff"]);
+    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+    endings.into_iter().any(|ending| name.ends_with(ending))
 }
 
 /// Beside the slices of one volume, single pictures are previews and the like.

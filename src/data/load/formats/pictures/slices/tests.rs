@@ -165,3 +165,60 @@ fn broken_and_huge_pictures_are_refused() {
     let large = folder(&[("a.png", grey(300, &vec![0; 300 * 300]))]);
     assert_refused(load_path(&large.path().join("a.png")), LoadErrorKind::Limit, &["allowed"]);
 }
+
+#[test]
+fn slices_come_before_channels_in_names() {
+    let mut pictures = Vec::new();
+    for z in 0..8 {
+        for channel in 0..2 {
+            let name = format!("Series001_z{z:02}_ch{channel:02}.png");
+            pictures.push((name, grey(2, &[z + 100 * channel, z])));
+        }
+    }
+    let named: Vec<(&str, DynamicImage)> =
+        pictures.iter().map(|(name, picture)| (name.as_str(), picture.clone())).collect();
+    let stacks = folder(&named);
+    let listed = ["2 series", "0 \"series001_z#_ch00.png\" (2 x 1 x 8)", "1 \"series001_z#_ch01.png\""];
+    assert_refused(load_path(stacks.path()), LoadErrorKind::BadInput, &listed);
+    for channel in 0..2 {
+        let choice = Choice { series: Some(channel.to_string()), ..Choice::default() };
+        let volume = load_with(stacks.path(), choice).unwrap();
+        let expected: Vec<u8> = (0..8).flat_map(|z| [z + 100 * channel, z]).collect();
+        assert_eq!((volume.dims(), volume.samples()), ([2, 1, 8], &Samples::U8(expected)));
+    }
+}
+
+#[test]
+fn a_slice_that_is_no_picture_is_said() {
+    let damaged = |bytes: &[u8], name: &str| {
+        let stack = folder(&[("s000.png", grey(2, &[1, 2])), ("s002.png", grey(2, &[3, 4]))]);
+        std::fs::write(stack.path().join(name), bytes).unwrap();
+        std::fs::write(stack.path().join("notes001.txt"), b"x").unwrap();
+        load_path(stack.path()).unwrap().remarks().join("; ")
+    };
+    for bytes in [&b"garbage"[..], b"", &[0; 4096]] {
+        let remarks = damaged(bytes, "s001.png");
+        assert!(remarks.contains("\"s001.png\" is left out: it is no picture"), "{remarks}");
+        assert!(!remarks.contains("notes"), "{remarks}");
+    }
+    assert!(damaged(b"garbage", "other.jpeg").contains("\"other.jpeg\" is left out"));
+    assert!(!damaged(b"garbage", "other.dat").contains("left out"));
+    // Of slices in TIFF files one is left, which is read as a file of its own.
+    let two = TempDir::new().unwrap();
+    grey(2, &[1, 2]).save_with_format(two.path().join("a0.png"), ImageFormat::Png).unwrap();
+    std::fs::write(two.path().join("a1.png"), b"garbage").unwrap();
+    let volume = load_path(two.path()).unwrap();
+    assert_eq!(*volume.samples(), Samples::U8(vec![1, 2]));
+    assert!(volume.remarks()[0].contains("\"a1.png\" is left out"));
+    // Those of other series are not told of this one.
+    let series = folder(&[
+        ("a1.png", grey(1, &[1])),
+        ("a2.png", grey(1, &[2])),
+        ("b1.png", grey(1, &[3])),
+        ("b2.png", grey(1, &[4])),
+    ]);
+    std::fs::write(series.path().join("b3.png"), b"garbage").unwrap();
+    let choose = |series_key: &str| Choice { series: Some(series_key.to_owned()), ..Choice::default() };
+    assert!(load_with(series.path(), choose("0")).unwrap().remarks().is_empty());
+    assert!(load_with(series.path(), choose("1")).unwrap().remarks()[0].contains("b3.png"));
+}

@@ -6,6 +6,7 @@
 
 mod fault;
 mod file;
+mod gaps;
 mod plain;
 mod said;
 mod single;
@@ -15,12 +16,14 @@ mod tests;
 
 use crate::data::Volume;
 use crate::data::attempt::Attempt;
-use crate::data::load::LoadError;
+use crate::data::load::reading::input::{Input, Witness};
 use crate::data::load::reading::reader::{Reader, Source};
+use crate::data::load::{LoadControl, LoadError, LoadOptions};
 use file::Tiff;
 use file::page::tag;
 use said::palette::Palette;
-use said::{imagej, lsm, ome};
+use said::{imagej, lsm, ome, shaped};
+use stack::Stack;
 
 pub(in crate::data::load) use single::Picture;
 
@@ -36,25 +39,63 @@ pub(in crate::data::load) const READER: Reader = Reader {
     load,
 };
 
+/// OME-XML in a file of its own, which says what the pages of TIFF files beside it are.
+pub(in crate::data::load) const COMPANION: Reader = Reader {
+    name: "OME-TIFF set",
+    endings: &[".companion.ome", ".ome"],
+    recognises: |start| ome::is_ome(&String::from_utf8_lossy(start.stored())),
+    load: load_companion,
+};
+
+/// Action that messages name.
+const WHAT: &str = "read the TIFF volume";
+
 /// Loads a TIFF file.
 fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     let Source { path, input, start, options, control } = source;
-    let attempt = Attempt { what: "read the TIFF volume", path };
+    let attempt = Attempt { what: WHAT, path };
     if !is_tiff(start.stored()) {
         return Err(attempt.bad_input("header", "it does not begin as TIFF files do", fault::HELP));
     }
     let mut tiff = Tiff::open(attempt, input, control)?;
     let description = tiff.text(tag::DESCRIPTION, ome::MOST_XML_BYTES).unwrap_or_default();
     let choice = &options.choice;
-    let mut stack = if ome::is_ome(&description) {
+    let stack = if ome::is_ome(&description) {
         ome::stack(attempt, &tiff, &description, choice)?
     } else if imagej::is_imagej(&description) {
         imagej::stack(attempt, &mut tiff, &description, choice)?
     } else if let Some(info) = lsm::Info::of(&mut tiff) {
         info.stack(attempt, &tiff, choice)?
+    } else if let Some(stack) = shaped::stack(attempt, &mut tiff, choice)? {
+        stack
     } else {
         plain::stack(attempt, &tiff, choice)?
     };
+    volume(attempt, tiff, stack, options, control)
+}
+
+/// Loads the volume of a file of OME-XML that lies beside its TIFF files.
+fn load_companion(source: Source<'_>) -> Result<Volume, LoadError> {
+    let Source { path, options, control, .. } = source;
+    let attempt = Attempt { what: "read the OME-XML of the volume", path };
+    let xml = ome::companion_text(attempt)?;
+    let first = ome::first_file(attempt, &xml, &options.choice)?;
+    let of_first = Attempt { what: WHAT, path: &first };
+    let input = Input::open(of_first)?;
+    let witness = Witness::of(of_first, &input)?;
+    let tiff = Tiff::open(of_first, input, control)?;
+    let stack = ome::stack(of_first, &tiff, &xml, &options.choice)?;
+    witness.vouch(of_first, volume(of_first, tiff, stack, options, control))
+}
+
+/// The volume of a stack, with what the first page says of values.
+fn volume(
+    attempt: Attempt<'_>,
+    mut tiff: Tiff,
+    mut stack: Stack,
+    options: &LoadOptions,
+    control: &LoadControl,
+) -> Result<Volume, LoadError> {
     // A number needs no more.
     let no_data = tiff.text(tag::NO_DATA, 64).unwrap_or_default();
     if let Ok(stored) = no_data.trim().parse::<f64>() {

@@ -46,7 +46,7 @@ pub(super) fn stack(attempt: Attempt<'_>, tiff: &Tiff, choice: &Choice) -> Resul
     let chosen = steps.chosen(attempt, choice)?;
     Ok(Stack {
         name: stem(attempt.path),
-        slices: pages.into_iter().map(|page| Slice { file: 0, page }).collect(),
+        slices: pages.into_iter().map(|page| Some(Slice { file: 0, page })).collect(),
         beside: Vec::new(),
         sample: is_channels.then_some(chosen.channel),
         placement,

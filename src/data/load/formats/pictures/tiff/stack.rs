@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 
 use super::fault::HELP;
-use super::file::Tiff;
 use super::file::page::{Meaning, Page};
+use super::file::{Tiff, zeroed};
 use crate::data::attempt::{Attempt, Extent};
 use crate::data::load::formats::pictures::pile::read_pile;
 use crate::data::load::reading::input::{Input, Witness};
@@ -32,7 +32,8 @@ pub(super) struct Slice {
 /// A volume, before its voxels are read.
 pub(super) struct Stack {
     pub(super) name: String,
-    pub(super) slices: Vec<Slice>,
+    /// One after the other; what has no page is empty.
+    pub(super) slices: Vec<Option<Slice>>,
     /// Files besides the one that is opened.
     pub(super) beside: Vec<PathBuf>,
     /// The sample that is meant, where those of a page are channels.
@@ -152,7 +153,7 @@ impl Stack {
     ) -> Result<Volume, LoadError> {
         let Self { name, slices, beside, sample, mut placement, mut hints, scale: [slope, intercept] } = self;
         let mut files = Files { attempt, first: tiff, beside: &beside, open: None, control };
-        let Some(&first) = slices.first() else {
+        let Some(&first) = slices.iter().flatten().next() else {
             return Err(attempt.bad_input("pages", "there is none", HELP));
         };
         let model = files.with(first.file, |attempt, tiff| page_of(attempt, tiff, first.page))?;
@@ -162,25 +163,28 @@ impl Stack {
         let extent = Extent::checked(attempt, "pages", dims, stored.voxel_type(), options.room(control))?;
         check_page_bytes(attempt, &model, options)?;
         placement.remarks.extend(stored.part.remark().map(str::to_owned));
+        // That is for screens and paper: what was measured, or marked in a mask, is what is stored.
         if model.is_inverted {
-            placement.remarks.push(if matches!(model.format, 1 | 4) {
-                "the lowest values stand for white: values are turned around".to_owned()
-            } else {
-                "the lowest values stand for white: values are shown as they are".to_owned()
-            });
+            let remark = "0 is said to stand for white: values are those that are stored";
+            placement.remarks.push(remark.to_owned());
         }
         // The first page, before there is room for all: one that has not what it announces asks for none.
         files.with(first.file, |attempt, tiff| {
             tiff.check_room(attempt, first.page, sample.filter(|_| model.is_planar), control)
         })?;
         let values = |samples| rescaled(attempt, samples, [slope, intercept], options.memory_budget_bytes);
+        let empty_bytes = model.width.saturating_mul(model.height).saturating_mul(stored.bytes_of_voxel());
         let meant = Meant { padding: hints.padding, values: &values };
         let voxels = read_pile(attempt, &stored, extent, &meant, control, |some| {
             let mut unpacked = Vec::new();
             let mut slices = some.iter().map(|&slice| &slices[slice]).peekable();
             while slices.peek().is_some() {
                 let (mut packed, mut bytes) = (Vec::new(), 0);
-                while let Some(&Slice { file, page }) = slices.next_if(|_| bytes < PACKED_BYTES) {
+                while let Some(&slice) = slices.next_if(|_| bytes < PACKED_BYTES) {
+                    let Some(Slice { file, page }) = slice else {
+                        packed.push(None);
+                        continue;
+                    };
                     let of_page = files.with(file, |attempt, tiff| {
                         let found = page_of(attempt, tiff, page)?;
                         if !found.is_like(&model) {
@@ -190,10 +194,12 @@ impl Stack {
                         tiff.fetch(attempt, page, sample.filter(|_| found.is_planar), control)
                     })?;
                     bytes += of_page.len();
-                    packed.push((page, of_page));
+                    packed.push(Some((page, of_page)));
                 }
-                let of_slices =
-                    packed.par_iter().map(|(page, packed)| packed.unpack(attempt, *page, control));
+                let of_slices = packed.par_iter().map(|packed| match packed {
+                    Some((page, packed)) => packed.unpack(attempt, *page, control),
+                    None => zeroed(attempt, "pages", empty_bytes),
+                });
                 unpacked.extend(of_slices.collect::<Result<Vec<_>, _>>()?);
             }
             Ok(unpacked)

@@ -240,4 +240,7 @@ fn of_compressed_files_the_start_is_looked_at() {
     let bytes = RawBytes::open(file.path()).unwrap();
     assert_eq!((bytes.length(), bytes.is_exact()), (40 << 20, false));
     assert!(bytes.readable() < bytes.length());
+    // Also where zeros fill the file up.
+    std::io::Write::write_all(&mut file, &[0; 4096]).unwrap();
+    assert_eq!(RawBytes::open(file.path()).unwrap().length(), 40 << 20);
 }

@@ -41,10 +41,11 @@ pub(super) fn is_xml(start: &Start) -> bool {
 }
 
 /// How a file writes its values.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct Style {
     words: Words,
-    compressor: Option<Compressor>,
+    /// Compressor of what is not text; the name of one that is not read is refused only where it has packed something.
+    compressor: Option<Result<Compressor, String>>,
     /// Whether what is appended is base64.
     appends_text: bool,
 }
@@ -169,12 +170,9 @@ fn style(attempt: Attempt<'_>, root: Node<'_, '_>) -> Result<Style, LoadError> {
     };
     let compressor = match root.attribute("compressor") {
         None | Some("") => None,
-        Some("vtkZLibDataCompressor") => Some(Compressor::Zlib),
-        Some("vtkLZ4DataCompressor") => Some(Compressor::Lz4),
-        Some(other) => {
-            let known = "vtkZLibDataCompressor or vtkLZ4DataCompressor";
-            return refused("compressor", other, known, "write it again with one of those, or uncompressed");
-        }
+        Some("vtkZLibDataCompressor") => Some(Ok(Compressor::Zlib)),
+        Some("vtkLZ4DataCompressor") => Some(Ok(Compressor::Lz4)),
+        Some(other) => Some(Err(other.to_owned())),
     };
     let appended = root.children().find(|node| node.has_tag_name("AppendedData"));
     let appends_text = match appended.and_then(|node| node.attribute("encoding")) {
@@ -328,6 +326,10 @@ fn read_binary(
 ) -> Result<Voxels, LoadError> {
     let Style { words, compressor, .. } = style;
     let expected = chosen.stored_bytes();
+    let compressor = compressor.transpose().map_err(|other| {
+        let why = format!("vtkZLibDataCompressor or vtkLZ4DataCompressor is read, {} is not", quoted(&other));
+        attempt.bad_input("compressor", why, "write it again with one of those, or uncompressed")
+    })?;
     let Some(compressor) = compressor else {
         check_length(&mut reader, words, expected).map_err(|error| broken(attempt, error))?;
         check_room(attempt, &chosen.array.name, expected, room.unwrap_or(expected), "bytes")?;

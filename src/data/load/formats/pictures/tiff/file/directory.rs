@@ -106,6 +106,11 @@ impl Directory {
         self.entries.iter().find(|entry| entry.tag == tag).copied()
     }
 
+    /// All entries of a tag that stands there more than once.
+    pub(in super::super) fn all(&self, tag: u16) -> impl Iterator<Item = Entry> {
+        self.entries.iter().filter(move |entry| entry.tag == tag).copied()
+    }
+
     /// Reads the directory at a place, and where the next one is; 0 after the last.
     fn read(file: &mut Bytes, is_big: bool, at: u64) -> io::Result<(Self, u64)> {
         // Bytes of the count of entries, of an entry, of a place in the file.

@@ -22,9 +22,9 @@ use crate::data::load::reading::samples::Fault;
 use crate::data::load::{Endian, LoadControl, LoadError};
 use bytes::Bytes;
 use codec::Codec;
-use directory::{Directory, walk};
+use directory::{Directory, Entry, walk};
 use page::{Offsets, Page};
-use unpack::{invert, restore, widen};
+use unpack::{restore, widen};
 
 /// Most strips or tiles of a page: those of 256 x 256 pixels are so many in a page of a quarter of a million squared.
 const MOST_PARTS: u64 = 1 << 20;
@@ -81,6 +81,11 @@ impl Tiff {
     /// The text of an entry of the first page's directory, at most so many bytes of it.
     pub(super) fn text(&mut self, tag: u16, most: u64) -> Option<String> {
         self.first.get(tag)?.text(&mut self.bytes, most).ok()
+    }
+
+    /// The text of an entry of any page, at most so many bytes of it.
+    pub(super) fn text_of(&mut self, entry: Entry, most: u64) -> Option<String> {
+        entry.text(&mut self.bytes, most).ok()
     }
 
     /// Fetches the parts of a page: all, or those of one sample where each sample has its own.
@@ -214,7 +219,7 @@ struct Place {
 
 /// So many bytes of zero, which take memory only as they are written: a page that holds less than it announces takes no
 /// more than it holds.
-fn zeroed(attempt: Attempt<'_>, field: &str, count: u64) -> Result<Vec<u8>, LoadError> {
+pub(super) fn zeroed(attempt: Attempt<'_>, field: &str, count: u64) -> Result<Vec<u8>, LoadError> {
     let room = usize::try_from(count).ok().and_then(|count| try_zeroed_vec(count).ok());
     room.ok_or_else(|| {
         let why = format!("the memory for {count} bytes is not there");
@@ -257,9 +262,6 @@ impl Packed {
                     self.unpack_part(attempt, &field, [column, row], part, band, control)
                 })
             })?;
-        }
-        if page.is_inverted && matches!(page.format, 1 | 4) {
-            invert(&mut all, page.bits);
         }
         Ok(if planes > 1 { woven(&all, planes, size) } else { all })
     }

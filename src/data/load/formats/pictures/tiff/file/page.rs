@@ -37,6 +37,9 @@ pub(in super::super) mod tag {
     pub(in super::super::super) const DEPTH: u16 = 32997;
     /// Of GDAL, in text: the value of what was not measured.
     pub(in super::super::super) const NO_DATA: u16 = 42113;
+    /// Lengths of what `ImageJ` keeps beside its stacks, and that.
+    pub(in super::super::super) const IMAGEJ_COUNTS: u16 = 50838;
+    pub(in super::super::super) const IMAGEJ_CONTENT: u16 = 50839;
     /// Of Zeiss' laser scanning microscopes.
     pub(in super::super::super) const LSM_INFO: u16 = 34412;
 }
@@ -95,6 +98,8 @@ pub(in super::super) struct Page {
     pub(in super::super) counts: Option<Entry>,
     /// Not what was recorded itself: smaller, or a mask.
     pub(in super::super) is_aside: bool,
+    /// Words about it: some programs write theirs behind those of the user.
+    pub(in super::super) descriptions: [Option<Entry>; 2],
 }
 
 impl Page {
@@ -153,6 +158,10 @@ impl Page {
             counts: directory.get(if is_tiled { tag::TILE_COUNTS } else { tag::STRIP_COUNTS }),
             // Bit 0: of reduced resolution; bit 2: a mask. In the older tag 2 is of reduced resolution.
             is_aside: subfile & 0b101 != 0 || old_subfile == 2,
+            descriptions: {
+                let mut all = directory.all(tag::DESCRIPTION);
+                [all.next(), all.next()]
+            },
         };
         let has_none = [width, height, part[0], part[1], bits, samples as u64].contains(&0);
         let is_same = page.has_one_kind_of_numbers(file, directory)?;

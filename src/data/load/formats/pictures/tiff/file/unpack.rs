@@ -85,20 +85,6 @@ pub(super) fn widen(packed: &[u8], bits: u64, count: usize, wide: &mut Vec<u8>) 
     }
 }
 
-/// Makes the lowest of whole numbers the highest.
-pub(super) fn invert(numbers: &mut [u8], bits: u64) {
-    match bits {
-        8 | 16 | 32 | 64 => numbers.iter_mut().for_each(|byte| *byte = !*byte),
-        1..8 => numbers.iter_mut().for_each(|byte| *byte = ((1 << bits) - 1) - (*byte & ((1 << bits) - 1))),
-        _ => {
-            for number in numbers.as_chunks_mut::<2>().0 {
-                let most = (1u16 << bits.min(15)) - 1;
-                *number = (most - (u16::from_le_bytes(*number) & most)).to_le_bytes();
-            }
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -114,18 +100,5 @@ mod tests {
         assert_eq!(widened(&[0x1F, 0x30], 4, 3), [1, 15, 3]);
         assert_eq!(widened(&[0xAB, 0xC1, 0x23], 12, 2), [0xBC, 0x0A, 0x23, 0x01]);
         assert_eq!(widened(&[], 12, 1), [0, 0], "what is not there is 0");
-    }
-
-    #[test]
-    fn white_becomes_the_highest() {
-        for (bits, numbers, inverted) in [
-            (1, vec![0, 1], vec![1, 0]),
-            (8, vec![0, 200], vec![255, 55]),
-            (12, vec![0, 0], vec![0xFF, 0x0F]),
-        ] {
-            let mut numbers = numbers;
-            invert(&mut numbers, bits);
-            assert_eq!(numbers, inverted, "{bits}");
-        }
     }
 }

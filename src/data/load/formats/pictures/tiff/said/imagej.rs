@@ -5,15 +5,14 @@
 
 use super::super::fault::HELP;
 use super::super::file::Tiff;
-use super::super::file::directory::MOST_PAGES;
-use super::super::file::page::{Offsets, Page, tag};
 use super::super::plain::usable;
 use super::super::stack::{Slice, Stack, Steps};
-use super::length::millimetres;
+use super::contiguous::contiguous;
+use super::names::ImagejMetadata;
+use super::place::place;
 use crate::data::Hints;
 use crate::data::attempt::Attempt;
 use crate::data::load::reading::input::stem;
-use crate::data::load::reading::placement::Placement;
 use crate::data::load::{Choice, LoadError};
 
 /// Most channels that `ImageJ` shows together.
@@ -54,7 +53,7 @@ pub(in super::super) fn stack(
         && images > 1
         && page.is_bare()
     {
-        tiff.pages = contiguous(attempt, tiff, &page, images)?;
+        tiff.pages = contiguous(attempt, tiff, &page, images, "images")?;
     }
     let mut remarks = Vec::new();
     let pages = usable(tiff, &mut remarks);
@@ -83,8 +82,9 @@ pub(in super::super) fn stack(
         (1, pages.len(), 1)
     };
     let dims = [first.width, first.height, slices as u64];
-    let chosen = Steps { dims, channels, channel_names: Vec::new(), frames }.chosen(attempt, choice)?;
-    let mut placement = place(tiff, &said);
+    let channel_names = ImagejMetadata::read(tiff).channel_names(channels, pages.len());
+    let chosen = Steps { dims, channels, channel_names, frames }.chosen(attempt, choice)?;
+    let mut placement = place(tiff, said.text("unit"), said.number("spacing"));
     placement.remarks.splice(0..0, remarks);
     chosen.remark(&mut placement);
     let page_of = |[frame, slice]: [usize; 2]| pages[(frame * slices + slice) * channels + chosen.channel];
@@ -93,7 +93,7 @@ pub(in super::super) fn stack(
         slices: chosen
             .slices(slices, frames)
             .into_iter()
-            .map(|place| Slice { file: 0, page: page_of(place) })
+            .map(|place| Some(Slice { file: 0, page: page_of(place) }))
             .collect(),
         beside: Vec::new(),
         sample: None,
@@ -101,65 +101,6 @@ pub(in super::super) fn stack(
         hints: hints(&said, channels),
         scale: scale(&said),
     })
-}
-
-/// Pages for slices that follow each other in a file that has a page for the first alone.
-fn contiguous(
-    attempt: Attempt<'_>,
-    tiff: &mut Tiff,
-    page: &Page,
-    images: usize,
-) -> Result<Vec<Page>, LoadError> {
-    let broken = |why: String| attempt.bad_input("images", why, HELP);
-    let offset = match page.offsets {
-        Offsets::At(at) => at,
-        Offsets::Listed(entry) => entry
-            .whole(&mut tiff.bytes)
-            .map_err(|error| super::super::fault::unreadable(attempt, "first page", error))?,
-    };
-    let slice = page.bytes().ok_or_else(|| broken("its slices cannot be so large".to_owned()))?;
-    let end = slice.checked_mul(images as u64).and_then(|bytes| bytes.checked_add(offset));
-    if images > MOST_PAGES || end.is_none_or(|end| end > tiff.bytes.len()) {
-        return Err(broken(format!(
-            "the data are truncated: {images} slices of {slice} bytes expected, {} bytes found",
-            tiff.bytes.len().saturating_sub(offset)
-        )));
-    }
-    let at = |image: usize| Page {
-        part: [page.width, page.height],
-        offsets: Offsets::At(offset + image as u64 * slice),
-        counts: None,
-        ..*page
-    };
-    Ok((0..images).map(at).collect())
-}
-
-/// How far apart voxels are.
-fn place(tiff: &mut Tiff, said: &Said<'_>) -> Placement {
-    let per_unit = |number: Option<f64>| {
-        number.filter(|number| number.is_finite() && *number > 0.0).map(|number| 1.0 / number)
-    };
-    let across = per_unit(tiff.said(tag::X_RESOLUTION));
-    let down = per_unit(tiff.said(tag::Y_RESOLUTION));
-    let deep = said.number("spacing");
-    // What is 1 of the unit is not written.
-    let lengths = [across.unwrap_or(1.0), down.or(across).unwrap_or(1.0), deep.unwrap_or(1.0)];
-    match said.text("unit").and_then(millimetres) {
-        Some(unit) if across.is_some() => {
-            let mut placement = Placement::spaced(lengths.map(|length| length * unit)).said_in(unit);
-            if deep.is_none() {
-                placement
-                    .remarks
-                    .push("no distance of slices is written: 1 of its unit, as ImageJ takes it".to_owned());
-            }
-            placement
-        }
-        // Pixels, or something unknown: no more than how much longer one side is than another.
-        _ if deep.is_some() => {
-            Placement { is_scale_known: false, ..Placement::spaced([lengths[0], lengths[1], lengths[2]]) }
-        }
-        _ => Placement::unknown(),
-    }
 }
 
 /// What values mean: stored ones times the first, plus the second. `ImageJ` has signed numbers of 16 bits in this way.

@@ -75,7 +75,8 @@ impl Info {
         chosen.remark(&mut placement);
         let mut hints = Hints::default();
         hints.modality = Modality::LightMicroscopy;
-        let page_of = |[frame, slice]: [usize; 2]| Slice { file: 0, page: pages[frame * slices + slice] };
+        let page_of =
+            |[frame, slice]: [usize; 2]| Some(Slice { file: 0, page: pages[frame * slices + slice] });
         Ok(Stack {
             name: stem(attempt.path),
             slices: chosen.slices(slices, frames).into_iter().map(page_of).collect(),

@@ -3,6 +3,7 @@
 mod broken;
 mod numbers;
 mod ome;
+mod shaped;
 mod stacks;
 mod writer;
 

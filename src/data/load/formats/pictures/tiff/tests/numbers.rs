@@ -183,13 +183,26 @@ fn colours_are_luminance_or_a_component() {
 }
 
 #[test]
-fn white_is_turned_around_and_few_bits_are_widened() {
+fn values_are_those_that_are_stored_whichever_is_white() {
     let white = |bits, pixels: &[u8]| LITTLE.leaf([2, 1], bits, pixels).with(tag::PHOTOMETRIC, SHORT, &[0]);
-    let volume = load_bytes(&LITTLE.file(&[white(8, &[0, 200])])).unwrap();
-    assert_eq!(*volume.samples(), Samples::U8(vec![255, 55]));
-    assert!(volume.remarks()[0].contains("white"));
-    let bits = samples_of(&LITTLE.file(&[white(1, &[0b1000_0000])]));
-    assert_eq!(bits, Samples::U8(vec![0, 1]));
+    // A mask of one bit, one of bytes, and greys: the object of a mask is what was marked.
+    for (bits, pixels, expected) in [
+        (1, &[0b0100_0000][..], [0, 1]),
+        (8, &[0, 1], [0, 1]),
+        (8, &[0, 255], [0, 255]),
+        (8, &[0, 200], [0, 200]),
+        (4, &[0x0F], [0, 15]),
+    ] {
+        let volume = load_bytes(&LITTLE.file(&[white(bits, pixels)])).unwrap();
+        assert_eq!(*volume.samples(), Samples::U8(expected.to_vec()), "{bits}");
+        assert!(volume.remarks()[0].contains("stand for white"));
+    }
+    let wide = LITTLE.leaf([2, 1], 16, &[0, 0, 0x10, 0x27]).with(tag::PHOTOMETRIC, SHORT, &[0]);
+    assert_eq!(samples_of(&LITTLE.file(&[wide])), Samples::U16(vec![0, 10_000]));
+}
+
+#[test]
+fn numbers_of_few_bits_are_widened() {
     let reversed = LITTLE.leaf([2, 1], 1, &[0b0000_0001]).with(tag::FILL_ORDER, SHORT, &[2]);
     assert_eq!(samples_of(&LITTLE.file(&[reversed])), Samples::U8(vec![1, 0]));
     let twelve = LITTLE.leaf([3, 2], 12, &[0xAB, 0xC1, 0x23, 0, 0x10, 0, 0x10, 2, 0, 0x30]);

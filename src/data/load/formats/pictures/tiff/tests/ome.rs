@@ -115,7 +115,11 @@ fn pages_may_lie_in_files_beside() {
     // The folder says the same.
     assert_eq!(firsts(&load_with(folder.path(), Choice::default()).unwrap()), [0.0, 31.0, 32.0]);
     write(&set("missing.tif"));
-    assert_refused(load_with(&path, Choice::default()), LoadErrorKind::Io, &["missing.tif"]);
+    let volume = load_with(&path, Choice::default()).unwrap();
+    assert_eq!(firsts(&volume), [0.0, 31.0], "what is there is shown");
+    let remarks = volume.remarks().join("; ");
+    assert!(remarks.contains("3 slices are said, and there are pages for the first 2"), "{remarks}");
+    assert!(remarks.contains("\"missing.tif\" is not there"), "{remarks}");
     write(&set("../c.tif"));
     assert_refused(load_with(&path, Choice::default()), LoadErrorKind::BadInput, &["../c.tif", "FileName"]);
     // XML in a file of its own.
@@ -123,7 +127,112 @@ fn pages_may_lie_in_files_beside() {
     write(
         "<?xml version=\"1.0\"?><OME UUID=\"urn:uuid:own\"><BinaryOnly MetadataFile=\"set.companion.ome\"/></OME>",
     );
-    assert_eq!(firsts(&load_with(&path, Choice::default()).unwrap()), [0.0, 31.0, 32.0]);
+    let of_tiff = load_with(&path, Choice::default()).unwrap();
+    assert_eq!(firsts(&of_tiff), [0.0, 31.0, 32.0]);
+    // Opened itself.
+    let companion = folder.path().join("set.companion.ome");
+    let of_xml = load_with(&companion, Choice::default()).unwrap();
+    assert_eq!(firsts(&of_xml), [31.0, 32.0], "the file that was renamed is not known");
+}
+
+#[test]
+fn xml_beside_its_files_is_opened_as_they_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let pixels = "DimensionOrder=\"XYZCT\" SizeZ=\"3\" SizeC=\"1\" SizeT=\"1\" PhysicalSizeX=\"0.5\" PhysicalSizeY=\"0.5\" \
+                  PhysicalSizeZ=\"2\"";
+    let data = |z: usize| {
+        format!(
+            "<TiffData FirstZ=\"{z}\" IFD=\"0\" PlaneCount=\"1\"><UUID FileName=\"p{z}.ome.tif\">urn:uuid:{z}</UUID></TiffData>"
+        )
+    };
+    let xml = document(&image("", pixels, &(0..3).map(data).collect::<String>()));
+    let companion = folder.path().join("set.companion.ome");
+    std::fs::write(&companion, &xml).unwrap();
+    let tiff = |z: usize| folder.path().join(format!("p{z}.ome.tif"));
+    for z in 0..3 {
+        let xml =
+            format!("<OME UUID=\"urn:uuid:{z}\"><BinaryOnly MetadataFile=\"set.companion.ome\"/></OME>");
+        std::fs::write(tiff(z), LITTLE.file(&[page(10 * z as u8).with_text(tag::DESCRIPTION, &xml)]))
+            .unwrap();
+    }
+    let of_tiff = load_with(&tiff(1), Choice::default()).unwrap();
+    for path in [companion.as_path(), folder.path()] {
+        let volume = load_with(path, Choice::default()).unwrap();
+        assert_eq!(firsts(&volume), [0.0, 10.0, 20.0]);
+        assert_eq!(volume.spacing_mm(), of_tiff.spacing_mm());
+    }
+    // Without the first file, and without any.
+    std::fs::remove_file(tiff(0)).unwrap();
+    let volume = load_with(&companion, Choice::default()).unwrap();
+    assert_eq!(firsts(&volume), [10.0, 20.0]);
+    assert!(volume.remarks().join("; ").contains("pages for 1 to 2 of them"), "{:?}", volume.remarks());
+    for z in 1..3 {
+        std::fs::remove_file(tiff(z)).unwrap();
+    }
+    assert_refused(
+        load_with(&companion, Choice::default()),
+        LoadErrorKind::Io,
+        &["no such file", "p0.ome.tif"],
+    );
+    for (xml, kind, words) in [
+        (document(&image("", pixels, "<TiffData/>")), LoadErrorKind::BadInput, "no TIFF files"),
+        (xml.replace("p0.ome.tif", "../p0.ome.tif"), LoadErrorKind::BadInput, "out of the header's folder"),
+        (xml.replace("p0.ome.tif", "/etc/hostname"), LoadErrorKind::BadInput, "absolute"),
+        (xml[..xml.len() / 2].to_owned(), LoadErrorKind::BadInput, "OME-XML is broken"),
+    ] {
+        std::fs::write(&companion, xml).unwrap();
+        assert_refused(load_with(&companion, Choice::default()), kind, &[words]);
+    }
+}
+
+#[test]
+fn recordings_that_stopped_show_what_is_there() {
+    let pixels =
+        |z: u8, c: u8, t: u8| format!("DimensionOrder=\"XYZCT\" SizeZ=\"{z}\" SizeC=\"{c}\" SizeT=\"{t}\"");
+    for data in ["", "<TiffData/>", "<TiffData IFD=\"0\" PlaneCount=\"10\"/>"] {
+        let volume = load_bytes(&file(&document(&image("a", &pixels(10, 1, 1), data)), 6)).unwrap();
+        assert_eq!(firsts(&volume), [0.0, 1.0, 2.0, 3.0, 4.0, 5.0], "{data}");
+        assert!(volume.remarks()[0].contains("10 slices are said, and there are pages for the first 6"));
+    }
+    // In the second of four times: two are offered, and the second is short.
+    let stopped = file(&document(&image("a", &pixels(3, 1, 4), "")), 5);
+    assert_refused(load_bytes(&stopped), LoadErrorKind::BadInput, &["2 time steps"]);
+    let second = load_chosen(&stopped, Choice { frame: Some(1), ..Choice::default() }).unwrap();
+    assert_eq!(firsts(&second), [3.0, 4.0]);
+    let remarks = second.remarks().join("; ");
+    assert!(remarks.contains("4 time steps are said, and there are pages for the first 2"), "{remarks}");
+    assert_refused(
+        load_chosen(&stopped, Choice { frame: Some(3), ..Choice::default() }),
+        LoadErrorKind::BadInput,
+        &["\"3\" is none of its 2 time steps"],
+    );
+    // Of one slice over time what was recorded is its depth.
+    let times = load_bytes(&file(&document(&image("a", &pixels(1, 1, 9), "")), 4)).unwrap();
+    assert_eq!(firsts(&times), [0.0, 1.0, 2.0, 3.0]);
+    // A gap between keeps its place.
+    let data: String = [0, 1, 3].map(|z| format!("<TiffData FirstZ=\"{z}\" IFD=\"{z}\"/>")).concat();
+    let gap = load_bytes(&file(&document(&image("a", &pixels(5, 1, 1), &data)), 4)).unwrap();
+    assert_eq!(firsts(&gap), [0.0, 1.0, 0.0, 3.0]);
+    let remarks = gap.remarks().join("; ");
+    assert!(remarks.contains("slices 2: they are empty") && remarks.contains("the first 4"), "{remarks}");
+    // Nothing at all for what is chosen, and what there is.
+    let data: String =
+        [0, 1].map(|z| format!("<TiffData FirstC=\"1\" FirstZ=\"{z}\" IFD=\"{z}\"/>")).concat();
+    let other = file(&document(&image("a", &pixels(2, 2, 1), &data)), 2);
+    let refused = load_chosen(&other, Choice { channel: Some(0), ..Choice::default() });
+    assert_refused(
+        refused,
+        LoadErrorKind::BadInput,
+        &["no page for channel 0 at time 0", "with pages: 1 at 0"],
+    );
+}
+
+#[test]
+fn channels_are_called_by_their_dye_or_light_where_they_have_no_name() {
+    let pixels = "DimensionOrder=\"XYZCT\" SizeZ=\"1\" SizeC=\"3\" SizeT=\"1\"";
+    let channels = "<Channel Name=\"nuclei\" Fluor=\"DAPI\"/><Channel Name=\" \" Fluor=\"GFP\"/><Channel EmissionWavelength=\"610\"/>";
+    let refused = load_bytes(&file(&document(&image("a", pixels, channels)), 3));
+    assert_refused(refused, LoadErrorKind::BadInput, &["0 \"nuclei\"", "1 \"GFP\"", "2 \"610 nm\""]);
 }
 
 #[test]
@@ -135,9 +244,8 @@ fn lies_are_told() {
         (document(&image("a", "SizeZ=\"0\" SizeC=\"1\" SizeT=\"1\"", "")), "no size"),
         (document(&image("a", "SizeZ=\"9999999\" SizeC=\"1\" SizeT=\"1\"", "")), "9999999 slices"),
         (document(&image("a", "SizeZ=\"1\" SizeC=\"9999\" SizeT=\"9999\"", "")), "cannot be"),
-        (document(&image("a", pixels, "<TiffData IFD=\"0\"/>")), "no page for slice 1 of 3"),
         (document(&image("a", pixels, "<TiffData FirstZ=\"3\"/>")), "beyond"),
-        (document(&image("a", pixels, "<TiffData IFD=\"7\" PlaneCount=\"3\"/>")), "only 2 pages"),
+        (document(&image("a", pixels, "<TiffData IFD=\"7\" PlaneCount=\"3\"/>")), "the file has 2 pages"),
         (
             document(
                 &image("a", "SizeZ=\"2\" SizeC=\"1\" SizeT=\"1\"", "").replace("SizeX=\"2\"", "SizeX=\"3\""),

@@ -3,7 +3,8 @@
 use super::writer::{LITTLE, LONG, Leaf, SHORT};
 use super::{assert_refused, load_bytes, load_chosen};
 use crate::data::load::formats::pictures::tiff::file::page::tag;
-use crate::data::load::{Choice, LoadErrorKind};
+use crate::data::load::formats::pictures::tiff::said::names::tests::entries;
+use crate::data::load::{Choice, Endian, LoadErrorKind};
 use crate::data::{Modality, Samples, Volume};
 
 fn page(value: u8) -> Leaf {
@@ -66,6 +67,21 @@ fn hyperstacks_have_channels_slices_and_times() {
     assert_eq!(firsts(&volume), [70.0, 90.0, 110.0]);
     assert!((volume.spacing_mm() - glam::DVec3::new(0.5e-3, 0.25e-3, 1.5e-3)).length() < 1e-12);
     assert!(!volume.has_unknown_scale() && !volume.is_anatomical());
+}
+
+#[test]
+fn channels_are_called_as_imagej_calls_their_slices() {
+    let described = "ImageJ=1.53t\nimages=4\nchannels=2\nslices=2\n";
+    for labels in [&["DAPI", "GFP"][..], &["c:1/2 z:1/2 - DAPI", "c:2/2 z:1/2 - GFP", "DAPI", "GFP"]] {
+        let (counts, content) = entries("", labels, Endian::Little);
+        let mut leaves = pages(4);
+        leaves[0] = page(0)
+            .with_text(tag::DESCRIPTION, described)
+            .with(tag::IMAGEJ_COUNTS, LONG, &counts)
+            .with_bytes(tag::IMAGEJ_CONTENT, &content);
+        let refused = load_bytes(&LITTLE.file(&leaves));
+        assert_refused(refused, LoadErrorKind::BadInput, &["0 \"DAPI\" (2 x 1 x 2)", "1 \"GFP\""]);
+    }
 }
 
 #[test]

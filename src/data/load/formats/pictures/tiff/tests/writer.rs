@@ -155,6 +155,14 @@ impl Leaf {
         self.put(tag, Field { kind: ASCII, count: bytes.len() as u64, bytes })
     }
 
+    /// Another text of a tag that the page has already, before that.
+    pub(super) fn with_second_text(mut self, tag: u16, text: &str) -> Self {
+        let bytes = [text.as_bytes(), &[0]].concat();
+        let field = Field { kind: ASCII, count: bytes.len() as u64, bytes };
+        self.fields.insert(0, (tag, field));
+        self
+    }
+
     pub(super) fn with_bytes(self, tag: u16, bytes: &[u8]) -> Self {
         self.put(tag, Field { kind: BYTE, count: bytes.len() as u64, bytes: bytes.to_vec() })
     }

@@ -12,6 +12,7 @@ use roxmltree::{Document, Node};
 use super::super::fault::HELP;
 use super::super::file::Tiff;
 use super::super::file::page::Meaning;
+use super::super::gaps::SliceRun;
 use super::super::stack::{Slice, Stack, Steps};
 use super::length::millimetres;
 use crate::data::attempt::{Attempt, quoted};
@@ -106,19 +107,82 @@ pub(in super::super) fn stack(
     of_root(attempt, tiff, root, choice)
 }
 
+/// The first file that is there of those with the pages of the image that is meant, by a file of XML beside them.
+///
+/// # Errors
+/// `BadInput` where it names none or one that may not be read, `Io` where none is there.
+pub(crate) fn first_file(attempt: Attempt<'_>, xml: &str, choice: &Choice) -> Result<PathBuf, LoadError> {
+    let document = parsed(attempt, xml)?;
+    let [_, pixels] = image_of(attempt, document.root_element(), choice)?;
+    // Of more that are not there none would be found behind them.
+    const MOST_LOOKED_FOR: usize = 1 << 12;
+    let names = children(pixels, "TiffData").flat_map(|data| children(data, "UUID"));
+    let mut names: Vec<&str> = names.filter_map(|uuid| uuid.attribute("FileName")).collect();
+    names.dedup();
+    let mut lost = None;
+    for name in names.into_iter().take(MOST_LOOKED_FOR) {
+        match beside_of(attempt, name) {
+            Err(error @ LoadError::Io { .. }) => lost = lost.or(Some(error)),
+            found => return found,
+        }
+    }
+    Err(lost.unwrap_or_else(|| {
+        let why = "it names no TIFF files that would hold its pages";
+        attempt.bad_input("TiffData", why, "open the TIFF files themselves")
+    }))
+}
+
 /// Whether a name says nothing: programs that ask for none count images, as in `Image0` and `Image:0`.
 fn is_counted(name: &str) -> bool {
     let number = name.strip_prefix("Image").unwrap_or(name).trim_start_matches([':', ' ', '_']);
     name.is_empty() || name.starts_with("Image") && number.bytes().all(|byte| byte.is_ascii_digit())
 }
 
-fn companion_text(attempt: Attempt<'_>) -> Result<String, LoadError> {
+/// The text of a file of XML.
+pub(crate) fn companion_text(attempt: Attempt<'_>) -> Result<String, LoadError> {
     use std::io::Read as _;
     let input = crate::data::load::reading::input::Input::open(attempt)?;
     crate::data::load::reading::read_files::note(attempt.path);
-    let mut text = String::new();
-    input.reader.take(MOST_XML_BYTES).read_to_string(&mut text).map_err(|error| attempt.io(error))?;
-    Ok(text)
+    let mut text = Vec::new();
+    input.reader.take(MOST_XML_BYTES).read_to_end(&mut text).map_err(|error| attempt.io(error))?;
+    Ok(String::from_utf8_lossy(&text).into_owned())
+}
+
+/// The image that is meant, and its pixels.
+fn image_of<'a, 'i>(
+    attempt: Attempt<'_>,
+    root: Node<'a, 'i>,
+    choice: &Choice,
+) -> Result<[Node<'a, 'i>; 2], LoadError> {
+    let mut images: Vec<[Node<'_, '_>; 2]> =
+        children(root, "Image").filter_map(|image| Some([image, child(image, "Pixels")?])).collect();
+    let offers: Vec<Offer> = images
+        .iter()
+        .enumerate()
+        .map(|(at, &[image, pixels])| {
+            let size = |name| number(pixels, name).unwrap_or(0);
+            Offer::numbered(at, named(image), [size("SizeX"), size("SizeY"), size("SizeZ")])
+        })
+        .collect();
+    if offers.is_empty() {
+        return Err(attempt.bad_input("description", "its OME-XML has no image", HELP));
+    }
+    Ok(images.swap_remove(attempt.chosen(choice, Dimension::Series, offers)?))
+}
+
+/// The name of an image.
+fn named<'a>(image: Node<'a, '_>) -> &'a str {
+    image.attribute("Name").unwrap_or_default()
+}
+
+/// Name of a channel: its own, its dye, or the light that it sends.
+fn channel_name(channel: Node<'_, '_>) -> String {
+    let said = |name: &str| channel.attribute(name).map(str::trim).filter(|text| !text.is_empty());
+    let wavelength = || {
+        let unit = said("EmissionWavelengthUnit").unwrap_or("nm");
+        said("EmissionWavelength").map(|length| format!("{length} {unit}"))
+    };
+    said("Name").or_else(|| said("Fluor")).map(str::to_owned).or_else(wavelength).unwrap_or_default()
 }
 
 fn of_root(
@@ -130,50 +194,44 @@ fn of_root(
     let Some(first) = tiff.pages.first() else {
         return Err(attempt.bad_input("pages", "there is none", HELP));
     };
-    let images: Vec<(Node<'_, '_>, Node<'_, '_>)> =
-        children(root, "Image").filter_map(|image| Some((image, child(image, "Pixels")?))).collect();
-    let named = |image: Node<'_, '_>| image.attribute("Name").unwrap_or_default().to_owned();
-    let offers: Vec<Offer> = images
-        .iter()
-        .enumerate()
-        .map(|(at, &(image, pixels))| {
-            let size = |name| number(pixels, name).unwrap_or(0);
-            Offer::numbered(at, &named(image), [size("SizeX"), size("SizeY"), size("SizeZ")])
-        })
-        .collect();
-    if offers.is_empty() {
-        return Err(attempt.bad_input("description", "its OME-XML has no image", HELP));
-    }
-    let (image, pixels) = images[attempt.chosen(choice, Dimension::Series, offers)?];
+    let [image, pixels] = image_of(attempt, root, choice)?;
     let sizes = Sizes::of(attempt, pixels, first.samples)?;
     let inside = if first.meaning == Meaning::Channels { first.samples } else { 1 };
     let channels = sizes.channels.saturating_mul(inside);
-    let steps = Steps {
-        dims: sizes.dims,
-        channels,
-        channel_names: children(pixels, "Channel")
-            .map(|channel| channel.attribute("Name").unwrap_or_default().to_owned())
-            .collect(),
-        frames: sizes.frames,
-    };
     if channels.saturating_mul(sizes.frames) > super::super::file::directory::MOST_PAGES {
         return Err(attempt.bad_input("SizeC, SizeT", "so many channels and times cannot be", HELP));
     }
-    let chosen = steps.chosen(attempt, choice)?;
     let slices = usize::try_from(sizes.dims[2]).unwrap_or(usize::MAX);
     if slices > super::super::file::directory::MOST_PAGES {
         return Err(attempt.bad_input("SizeZ", format!("{slices} slices cannot be"), HELP));
     }
-    let channel = chosen.channel / inside;
-    let wanted: Vec<[usize; 3]> = chosen
-        .slices(slices, sizes.frames)
-        .into_iter()
-        .map(|[frame, slice]| [slice, channel, frame])
-        .collect();
     let pages = Pages::of(attempt, root, pixels, &sizes, tiff.pages.len())?;
-    let (slices, beside) = pages.find(attempt, &wanted)?;
+    let (frames, channels_there) = (pages.frames(), pages.channels().saturating_mul(inside));
+    let steps = Steps {
+        dims: sizes.dims,
+        channels: channels_there,
+        channel_names: children(pixels, "Channel").map(channel_name).collect(),
+        frames,
+    };
+    let chosen = steps.chosen(attempt, choice)?;
+    let channel = chosen.channel / inside;
+    let wanted: Vec<[usize; 3]> =
+        chosen.slices(slices, frames).into_iter().map(|[frame, slice]| [slice, channel, frame]).collect();
+    let found = pages.find(attempt, &wanted)?;
+    let Some(SliceRun { slices, remark }) = SliceRun::new(&found.slices) else {
+        return Err(pages.nothing(attempt, channel, chosen.frame));
+    };
     let mut placement = place(pixels);
     check_size(attempt, tiff, &slices, sizes.dims)?;
+    for (there, said, what) in [(frames, sizes.frames, "time steps"), (channels_there, channels, "channels")]
+    {
+        if there < said {
+            let remark = format!("{said} {what} are said, and there are pages for the first {there}");
+            placement.remarks.push(remark);
+        }
+    }
+    placement.remarks.extend(remark);
+    placement.remarks.extend(found.lost_files);
     chosen.remark(&mut placement);
     let name = match named(image) {
         name if is_counted(name.trim()) => crate::data::load::reading::input::stem(attempt.path),
@@ -182,7 +240,7 @@ fn of_root(
     Ok(Stack {
         name,
         slices,
-        beside,
+        beside: found.beside,
         sample: (inside > 1).then_some(chosen.channel % inside),
         placement,
         hints: hints(root, image, pixels, channel),
@@ -194,10 +252,11 @@ fn of_root(
 fn check_size(
     attempt: Attempt<'_>,
     tiff: &Tiff,
-    slices: &[Slice],
+    slices: &[Option<Slice>],
     [width, height, _]: [u64; 3],
 ) -> Result<(), LoadError> {
-    let own = slices.iter().find(|slice| slice.file == 0).and_then(|slice| tiff.pages.get(slice.page));
+    let own =
+        slices.iter().flatten().find(|slice| slice.file == 0).and_then(|slice| tiff.pages.get(slice.page));
     match own {
         Some(page) if [page.width, page.height] != [width, height] => Err(attempt.bad_input(
             "SizeX, SizeY",

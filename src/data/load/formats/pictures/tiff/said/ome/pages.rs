@@ -9,7 +9,7 @@ use super::super::super::fault::HELP;
 use super::super::super::file::directory::MOST_PAGES;
 use super::super::super::stack::Slice;
 use super::{Sizes, beside_of, children, number};
-use crate::data::attempt::Attempt;
+use crate::data::attempt::{Attempt, quoted};
 use crate::data::load::LoadError;
 
 /// The page of every slice, channel and time that there is one for.
@@ -21,6 +21,18 @@ pub(super) struct Pages<'a> {
     sizes: [usize; 3],
     /// What the file that is opened is called in the XML.
     own: Option<&'a str>,
+    /// Pages of that file.
+    own_pages: usize,
+}
+
+/// Pages of some slices.
+pub(super) struct SlicePages {
+    /// None for those that have no page.
+    pub(super) slices: Vec<Option<Slice>>,
+    /// The files that they lie in beside the one that is opened.
+    pub(super) beside: Vec<PathBuf>,
+    /// Remark on files that are not there.
+    pub(super) lost_files: Option<String>,
 }
 
 impl<'a> Pages<'a> {
@@ -72,47 +84,99 @@ impl<'a> Pages<'a> {
             pages.extend((0..own_pages.min(all)).map(|page| (page, ("", page))));
         }
         let own = own_name(attempt, root, &elements);
-        Ok(Self { places: pages, strides, sizes: counts, own })
+        Ok(Self { places: pages, strides, sizes: counts, own, own_pages })
     }
 
-    /// The pages for some slices, channels and times, and the files that they lie in beside the one that is opened.
+    /// The pages of some slices, channels and times.
     ///
     /// # Errors
-    /// `BadInput` where there is no page for one, `Io` where its file is not there.
-    pub(super) fn find(
-        &self,
-        attempt: Attempt<'_>,
-        wanted: &[[usize; 3]],
-    ) -> Result<(Vec<Slice>, Vec<PathBuf>), LoadError> {
-        let mut beside = Vec::new();
-        let mut known: HashMap<&str, usize> = HashMap::new();
+    /// `BadInput` where the name of a file leads out of the folder.
+    pub(super) fn find(&self, attempt: Attempt<'_>, wanted: &[[usize; 3]]) -> Result<SlicePages, LoadError> {
+        let (mut beside, mut lost) = (Vec::new(), Vec::new());
+        let mut known: HashMap<&str, Option<usize>> = HashMap::new();
         let mut slices = Vec::with_capacity(wanted.len());
         for place in wanted {
             let at = (0..3).map(|axis| place[axis] * self.strides[axis]).sum::<usize>();
             let Some(&(name, page)) = self.places.get(&at) else {
-                let [slice, channel, frame] = place;
-                let [slices, channels, frames] = self.sizes;
-                return Err(attempt.bad_input(
-                    "TiffData",
-                    format!(
-                        "there is no page for slice {slice} of {slices}, channel {channel} of {channels}, time {frame} of \
-                         {frames}"
-                    ),
-                    "the recording may have been stopped: choose another channel or time, or export it anew",
-                ));
+                slices.push(None);
+                continue;
             };
             let file = match known.get(name) {
-                _ if name.is_empty() || Some(name) == self.own => 0,
+                _ if name.is_empty() || Some(name) == self.own => (page < self.own_pages).then_some(0),
                 Some(&file) => file,
                 None => {
-                    beside.push(beside_of(attempt, name)?);
-                    known.insert(name, beside.len());
-                    beside.len()
+                    let file = match beside_of(attempt, name) {
+                        Ok(path) => {
+                            beside.push(path);
+                            Some(beside.len())
+                        }
+                        Err(LoadError::Io { .. }) => {
+                            lost.push(name);
+                            None
+                        }
+                        Err(error) => return Err(error),
+                    };
+                    known.insert(name, file);
+                    file
                 }
             };
-            slices.push(Slice { file, page });
+            slices.push(file.map(|file| Slice { file, page }));
         }
-        Ok((slices, beside))
+        let lost_files = lost.first().map(|first| match lost.len() - 1 {
+            0 => format!("the file {} is not there", quoted(first)),
+            more => format!("the file {} is not there, nor are {more} others", quoted(first)),
+        });
+        Ok(SlicePages { slices, beside, lost_files })
+    }
+
+    /// Time steps up to the last that a page is said for.
+    pub(super) fn frames(&self) -> usize {
+        self.count(2)
+    }
+
+    /// Channels up to the last that a page is said for.
+    pub(super) fn channels(&self) -> usize {
+        self.count(1)
+    }
+
+    fn count(&self, axis: usize) -> usize {
+        let places = self.places.iter().filter(|(_, place)| self.may_be_there(place));
+        let along = |at: &usize| at / self.strides[axis] % self.sizes[axis];
+        places.map(|(at, _)| along(at) + 1).max().unwrap_or(self.sizes[axis])
+    }
+
+    /// True where a page is there, as far as is known without opening another file.
+    fn may_be_there(&self, &(name, page): &(&str, usize)) -> bool {
+        let is_own = name.is_empty() || Some(name) == self.own;
+        !is_own || page < self.own_pages
+    }
+
+    /// Error for a channel and a time that have no page at all.
+    pub(super) fn nothing(&self, attempt: Attempt<'_>, channel: usize, frame: usize) -> LoadError {
+        // As many as a line has room for.
+        const MOST_LISTED: usize = 8;
+        let mut there: Vec<[usize; 2]> = self
+            .places
+            .iter()
+            .filter(|(_, place)| self.may_be_there(place))
+            .map(|(at, _)| [1, 2].map(|axis| at / self.strides[axis] % self.sizes[axis]))
+            .collect();
+        there.sort_unstable();
+        there.dedup();
+        let why = format!(
+            "there is no page for channel {channel} at time {frame}; the file has {} pages",
+            self.own_pages
+        );
+        let words = there.iter().take(MOST_LISTED).map(|[channel, frame]| format!("{channel} at {frame}"));
+        let words = words.collect::<Vec<_>>().join(", ");
+        let help = match there.len() {
+            0 => "copy the file again, or export it anew".to_owned(),
+            1..=MOST_LISTED => format!("choose a channel and a time with pages: {words}"),
+            more => {
+                format!("choose a channel and a time with pages: {words}, and {} more", more - MOST_LISTED)
+            }
+        };
+        attempt.bad_input("TiffData", why, help)
     }
 }
 

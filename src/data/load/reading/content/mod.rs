@@ -1,9 +1,11 @@
 //! What a file holds, read forwards: as it is stored, or inflated where it is compressed as a whole.
 
+pub(crate) mod members;
+
 use std::fs::File;
 use std::io::{self, BufReader, Read};
 
-use flate2::bufread::MultiGzDecoder;
+use members::GzipMembers;
 
 use super::input::{Input, most_inflated};
 use super::number::Stored;
@@ -24,7 +26,7 @@ pub(in crate::data::load) struct Content {
 
 enum Form {
     Stored(Input),
-    Inflated(Box<MultiGzDecoder<BufReader<File>>>),
+    Inflated(Box<GzipMembers<BufReader<File>>>),
 }
 
 impl Content {
@@ -32,7 +34,7 @@ impl Content {
     pub(in crate::data::load) fn of(input: Input, is_gzip: bool) -> Self {
         let most_bytes = if is_gzip { most_inflated(input.len) } else { input.len };
         let form = if is_gzip {
-            Form::Inflated(Box::new(MultiGzDecoder::new(input.reader)))
+            Form::Inflated(Box::new(GzipMembers::new(input.reader)))
         } else {
             Form::Stored(input)
         };

@@ -1,0 +1,73 @@
+//! Recordings that have not all of their pages: they were stopped, or a file of theirs is not there.
+
+use super::stack::Slice;
+
+/// Slices that are shown of a recording, with what the user is told of the others.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct SliceRun {
+    /// From the first that has a page to the last; those between without a page are empty.
+    pub(super) slices: Vec<Option<Slice>>,
+    pub(super) remark: Option<String>,
+}
+
+impl SliceRun {
+    /// Run of slices of which some have no page; `None` where none has one.
+    pub(super) fn new(slices: &[Option<Slice>]) -> Option<Self> {
+        let first = slices.iter().position(Option::is_some)?;
+        let last = slices.iter().rposition(Option::is_some)?;
+        let kept = slices[first..=last].to_vec();
+        let (said, there) = (slices.len(), kept.len());
+        let mut parts = Vec::new();
+        if there < said {
+            parts.push(if first == 0 {
+                format!("{said} slices are said, and there are pages for the first {there}: those are shown")
+            } else {
+                format!("{said} slices are said, and there are pages for {first} to {last} of them: those are shown")
+            });
+        }
+        let empty: Vec<usize> = (first..=last).filter(|&at| slices[at].is_none()).collect();
+        if !empty.is_empty() {
+            parts.push(format!("no pages are there for slices {}: they are empty", listed(&empty)));
+        }
+        let remark = (!parts.is_empty()).then(|| parts.join("; "));
+        Some(Self { slices: kept, remark })
+    }
+}
+
+/// Numbers in words, not all of many.
+fn listed(numbers: &[usize]) -> String {
+    // As many as a line has room for.
+    const MOST: usize = 8;
+    let mut words: Vec<String> = numbers.iter().take(MOST).map(usize::to_string).collect();
+    if numbers.len() > MOST {
+        words.push(format!("and {} more", numbers.len() - MOST));
+    }
+    words.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_are_left_out_and_gaps_between_stay() {
+        let slices = |pages: &[i32]| -> Vec<Option<Slice>> {
+            pages.iter().map(|&page| usize::try_from(page).ok().map(|page| Slice { file: 0, page })).collect()
+        };
+        let recorded = |pages: &[i32]| SliceRun::new(&slices(pages));
+        assert_eq!(recorded(&[-1, -1]), None);
+        assert_eq!(recorded(&[0, 1]), Some(SliceRun { slices: slices(&[0, 1]), remark: None }));
+        let stopped = recorded(&[0, 1, -1, -1]).unwrap();
+        assert_eq!(stopped.slices, slices(&[0, 1]));
+        assert!(stopped.remark.unwrap().contains("4 slices are said, and there are pages for the first 2"));
+        let between = recorded(&[-1, 5, -1, 7, -1]).unwrap();
+        assert_eq!(between.slices, slices(&[5, -1, 7]));
+        let remark = between.remark.unwrap();
+        assert!(
+            remark.contains("for 1 to 3 of them") && remark.contains("slices 2: they are empty"),
+            "{remark}"
+        );
+        let many: Vec<i32> = (0..40).map(|at| if at % 2 == 0 { at } else { -1 }).collect();
+        assert!(recorded(&many).unwrap().remark.unwrap().contains("13, 15, and 11 more"));
+    }
+}

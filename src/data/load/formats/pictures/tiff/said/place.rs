@@ -1,0 +1,34 @@
+//! Distances of voxels, by the resolution of the first page, a unit and a distance of slices.
+
+use super::super::file::Tiff;
+use super::super::file::page::tag;
+use super::length::millimetres;
+use crate::data::load::reading::placement::Placement;
+
+/// Placement of voxels, by the name of a unit of length and the distance of slices in it.
+pub(super) fn place(tiff: &mut Tiff, unit: Option<&str>, spacing: Option<f64>) -> Placement {
+    let per_unit = |number: Option<f64>| {
+        number.filter(|number| number.is_finite() && *number > 0.0).map(|number| 1.0 / number)
+    };
+    let across = per_unit(tiff.said(tag::X_RESOLUTION));
+    let down = per_unit(tiff.said(tag::Y_RESOLUTION));
+    let deep = spacing.filter(|spacing| spacing.is_finite());
+    // What is 1 of the unit is not written.
+    let lengths = [across.unwrap_or(1.0), down.or(across).unwrap_or(1.0), deep.unwrap_or(1.0)];
+    match unit.and_then(millimetres) {
+        Some(unit) if across.is_some() => {
+            let mut placement = Placement::spaced(lengths.map(|length| length * unit)).said_in(unit);
+            if deep.is_none() {
+                placement
+                    .remarks
+                    .push("no distance of slices is written: 1 of its unit, as ImageJ takes it".to_owned());
+            }
+            placement
+        }
+        // Pixels, or something unknown: no more than how much longer one side is than another.
+        _ if deep.is_some() => {
+            Placement { is_scale_known: false, ..Placement::spaced([lengths[0], lengths[1], lengths[2]]) }
+        }
+        _ => Placement::unknown(),
+    }
+}

@@ -1,0 +1,180 @@
+//! Words of tifffile on its pages, and of programs that write with it (napari, scikit-image): the shape of an array, and
+//! perhaps a letter for each of its axes. Files may hold several arrays, each with a shape on its first page.
+//!
+//! After tifffile's own reader (`TiffFile._series_shaped`, <https://github.com/cgohlke/tifffile>).
+
+mod axes;
+mod json;
+
+use super::super::fault::HELP;
+use super::super::file::Tiff;
+use super::super::file::page::{Meaning, Page};
+use super::super::gaps::SliceRun;
+use super::super::stack::{Slice, Stack, Steps};
+use super::contiguous::contiguous;
+use super::place::place;
+use crate::data::Hints;
+use crate::data::attempt::Attempt;
+use crate::data::load::reading::input::stem;
+use crate::data::load::{Choice, Dimension, LoadError, Offer};
+use axes::{PageAxes, PageStride};
+use json::{MOST_BYTES, ShapeDescription};
+
+/// Series of a file that are offered at most: more than any list can be chosen from.
+const MOST_SERIES: usize = 1 << 16;
+
+/// An array in a file.
+struct ShapedArray {
+    words: ShapeDescription,
+    axes: PageAxes,
+    /// The page of its first slice.
+    first: usize,
+    /// Pages of it that are there.
+    pages: usize,
+}
+
+/// The arrays of a file; none where it is not said what its pages are, or where that says nothing: each is an array.
+fn arrays(tiff: &mut Tiff, remarks: &mut Vec<String>) -> Vec<ShapedArray> {
+    let mut arrays: Vec<ShapedArray> = Vec::new();
+    let mut first = 0;
+    while first < tiff.pages.len() {
+        let page = tiff.pages[first];
+        let texts = page.descriptions.into_iter().flatten();
+        let words =
+            texts.into_iter().find_map(|entry| ShapeDescription::parse(&tiff.text_of(entry, MOST_BYTES)?));
+        let found = words.and_then(|words| {
+            let axes = PageAxes::new(&words.shape, words.axes.as_deref().unwrap_or_default(), &page)?;
+            Some((words, axes))
+        });
+        let Some((words, axes)) = found else {
+            if !arrays.is_empty() {
+                let count = tiff.pages.len() - first;
+                remarks.push(format!(
+                    "the last {count} pages are left out: they belong to no array that is said"
+                ));
+            }
+            break;
+        };
+        let is_like = |other: &Page| other.is_like(&page) && other.descriptions == [None; 2];
+        // A page that begins an array of its own ends this one, whatever its shape promises.
+        let others = tiff.pages[first + 1..].iter().take(axes.pages - 1);
+        let pages = if words.truncated { 1 } else { 1 + others.take_while(|other| is_like(other)).count() };
+        arrays.push(ShapedArray { words, axes, first, pages });
+        first += pages;
+    }
+    // Pages that were written one by one are slices, as all pages are of which nothing is said.
+    if arrays.iter().all(|array| array.axes.pages == 1) { Vec::new() } else { arrays }
+}
+
+/// The stack of a file that says the shape of its arrays; `None` where it says nothing that plain pages do not.
+pub(in super::super) fn stack(
+    attempt: Attempt<'_>,
+    tiff: &mut Tiff,
+    choice: &Choice,
+) -> Result<Option<Stack>, LoadError> {
+    let mut remarks = Vec::new();
+    let mut arrays = arrays(tiff, &mut remarks);
+    if arrays.is_empty() {
+        return Ok(None);
+    }
+    let [at, series] = chosen_array(attempt, tiff, &arrays, choice)?;
+    let ShapedArray { words, axes, first, pages } = arrays.swap_remove(at);
+    let page = tiff.pages[first];
+    // One page for all, as long as what is said.
+    let follow = (pages == 1 && axes.pages > 1 && page.is_bare())
+        .then(|| contiguous(attempt, tiff, &page, axes.pages, "shape"));
+    let (first, pages) = match follow {
+        Some(Ok(all)) => {
+            let first = tiff.pages.len();
+            tiff.pages.extend(all);
+            (first, axes.pages)
+        }
+        Some(Err(error)) if words.truncated => return Err(error),
+        // Of a recording that was stopped there is but one.
+        _ => (first, pages),
+    };
+    let inside = if page.meaning == Meaning::Channels { page.samples } else { 1 };
+    let of_series = axes.series_page(series);
+    let size = |stride: Option<PageStride>| stride.map_or(1, |stride| stride.size);
+    // Of a recording that was stopped those that have a page at least.
+    let begun = |stride: Option<PageStride>, what: &str, remarks: &mut Vec<String>| {
+        let Some(stride) = stride else { return 1 };
+        let begun = stride.size.min(pages.saturating_sub(of_series + 1) / stride.pages + 1);
+        if begun < stride.size {
+            remarks
+                .push(format!("{} {what} are said, and there are pages for the first {begun}", stride.size));
+        }
+        begun
+    };
+    let slices = size(axes.slices);
+    let channels = begun(axes.channels, "channels", &mut remarks);
+    let frames = begun(axes.frames, "time steps", &mut remarks);
+    let steps = Steps {
+        dims: [page.width, page.height, slices as u64],
+        channels: channels.saturating_mul(inside),
+        channel_names: words.channel_names(size(axes.channels).saturating_mul(inside)),
+        frames,
+    };
+    let chosen = steps.chosen(attempt, choice)?;
+    let step = |stride: Option<PageStride>, at: usize| stride.map_or(0, |stride| stride.pages * at);
+    let wanted = chosen.slices(slices, frames).into_iter().map(|[frame, slice]| {
+        let channel = step(axes.channels, chosen.channel / inside);
+        let page = of_series + channel + step(axes.frames, frame) + step(axes.slices, slice);
+        (page < pages).then_some(Slice { file: 0, page: first + page })
+    });
+    let Some(SliceRun { slices, remark }) = SliceRun::new(&wanted.collect::<Vec<_>>()) else {
+        let why = format!("{} pages are said, and {pages} are there: none for what is chosen", axes.pages);
+        return Err(attempt.bad_input("shape", why, HELP));
+    };
+    let mut placement = place(tiff, words.unit.as_deref(), words.spacing);
+    if axes.is_assumed {
+        remarks.push(
+            "nothing says what the axes of its pages are: they are taken as time, channel and z".to_owned(),
+        );
+    }
+    remarks.extend(remark);
+    placement.remarks.splice(0..0, remarks);
+    chosen.remark(&mut placement);
+    Ok(Some(Stack {
+        name: stem(attempt.path),
+        slices,
+        beside: Vec::new(),
+        sample: (inside > 1).then_some(chosen.channel % inside),
+        placement,
+        hints: Hints::default(),
+        scale: [1.0, 0.0],
+    }))
+}
+
+/// Array that is meant, and series of it.
+fn chosen_array(
+    attempt: Attempt<'_>,
+    tiff: &Tiff,
+    arrays: &[ShapedArray],
+    choice: &Choice,
+) -> Result<[usize; 2], LoadError> {
+    let counts: Vec<usize> = arrays.iter().map(|array| array.axes.series_count()).collect();
+    let all = counts.iter().fold(0usize, |all, &count| all.saturating_add(count));
+    if all > MOST_SERIES {
+        let why = format!("it holds {all} series, {MOST_SERIES} are allowed");
+        return Err(attempt.limit("shape", why, "write fewer into one file"));
+    }
+    let mut offers = Vec::new();
+    for (array, &count) in arrays.iter().zip(&counts) {
+        let page = tiff.pages[array.first];
+        let slices = array.axes.slices.map_or(1, |stride| stride.size as u64);
+        let dims = [page.width, page.height, slices];
+        let name = array.words.name.as_deref().unwrap_or_default();
+        for _ in 0..count {
+            offers.push(Offer::numbered(offers.len(), name, dims));
+        }
+    }
+    let mut series = attempt.chosen(choice, Dimension::Series, offers)?;
+    for (at, &count) in counts.iter().enumerate() {
+        if series < count {
+            return Ok([at, series]);
+        }
+        series -= count;
+    }
+    Ok([0, 0])
+}

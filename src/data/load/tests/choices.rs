@@ -1,0 +1,82 @@
+//! Volumes that a file does not have: what is chosen must be there, in every format.
+
+use tempfile::TempDir;
+
+use super::shared::assert_refused;
+use super::*;
+
+/// Choices that a file of one volume cannot answer, and the option that is named.
+fn unanswerable() -> [(Choice, &'static str); 5] {
+    let choice = Choice::default;
+    [
+        (Choice { channel: Some(5), ..choice() }, "--channel"),
+        (Choice { frame: Some(3), ..choice() }, "--frame"),
+        (Choice { series: Some("4".to_owned()), ..choice() }, "--series"),
+        (Choice { array: Some("xyz".to_owned()), ..choice() }, "--array"),
+        (Choice { component: Some(2), ..choice() }, "--component"),
+    ]
+}
+
+fn load_choice(path: &Path, choice: Choice) -> Result<Volume, LoadError> {
+    let options = LoadOptions { choice, memory_budget_bytes: 1 << 20, ..LoadOptions::default() };
+    open(path, &options, &LoadControl::new())
+}
+
+#[test]
+fn what_a_file_does_not_have_cannot_be_chosen_in_any_format() {
+    let folder = TempDir::new().unwrap();
+    let voxels: Vec<u8> = (0..8).collect();
+    let numbers = "0 1 2 3 4 5 6 7";
+    let nrrd = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n";
+    let meta = "NDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n";
+    let vti = format!(
+        "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 1 0 1 0 1\"><Piece Extent=\"0 1 0 1 0 1\"><PointData>\
+         <DataArray type=\"UInt8\" Name=\"a\" format=\"ascii\">{numbers}</DataArray></PointData></Piece></ImageData></VTKFile>"
+    );
+    let vtk = format!(
+        "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 2 2\nPOINT_DATA 8\n\
+         SCALARS a unsigned_char\nLOOKUP_TABLE default\n{numbers}\n"
+    );
+    let cube = format!("t\nt\n0 0 0 0\n2 1 0 0\n2 0 1 0\n2 0 0 1\n{numbers}\n");
+    let npy = b"{'descr': '|u1', 'fortran_order': False, 'shape': (2, 2, 2), }\n";
+    let npy = [b"\x93NUMPY\x01\x00", &(npy.len() as u16).to_le_bytes()[..], npy, &voxels].concat();
+    let files = [
+        ("v.nrrd", [nrrd.as_bytes(), &voxels].concat()),
+        ("v.mha", [meta.as_bytes(), &voxels].concat()),
+        ("v.vti", vti.into_bytes()),
+        ("v.vtk", vtk.into_bytes()),
+        ("v.cube", cube.into_bytes()),
+        ("v.npy", npy),
+        ("v_2x2x2_uint8.raw", voxels),
+    ];
+    let mut paths: Vec<PathBuf> = files.iter().map(|(name, bytes)| write(&folder, name, bytes)).collect();
+    let slices = TempDir::new().unwrap();
+    for name in ["1.png", "2.png"] {
+        image::GrayImage::from_raw(2, 1, vec![1, 2]).unwrap().save(slices.path().join(name)).unwrap();
+    }
+    paths.extend([slices.path().to_owned(), slices.path().join("1.png"), PathBuf::from("builtin:box:16")]);
+    for path in paths {
+        load_choice(&path, Choice::default()).unwrap();
+        for (choice, option) in unanswerable() {
+            assert_refused(load_choice(&path, choice.clone()), LoadErrorKind::BadInput, &[option]);
+            // Who can choose again gets the first.
+            load_choice(&path, choice.or_first()).unwrap();
+        }
+        let first = Choice { channel: Some(0), frame: Some(0), ..Choice::default() };
+        load_choice(&path, first).unwrap_or_else(|error| panic!("every file has a first: {error}"));
+    }
+}
+
+#[test]
+fn what_there_is_instead_is_said() {
+    let folder = TempDir::new().unwrap();
+    let nrrd = "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 2 2 2 3\nencoding: raw\n\n";
+    let path = write(&folder, "v.nrrd", &[nrrd.as_bytes(), &[1; 24]].concat());
+    let choice = Choice { channel: Some(1), frame: Some(2), ..Choice::default() };
+    let words = ["\"1\" is named, and it has no channels", "time steps (--frame 0 to 2)"];
+    assert_refused(load_choice(&path, choice), LoadErrorKind::BadInput, &words);
+    let plain = nrrd.replace("dimension: 4", "dimension: 3").replace("2 2 2 3", "2 2 2");
+    let path = write(&folder, "p.nrrd", &[plain.as_bytes(), &[1; 8]].concat());
+    let choice = Choice { channel: Some(1), ..Choice::default() };
+    assert_refused(load_choice(&path, choice), LoadErrorKind::BadInput, &["one volume: leave --channel out"]);
+}
