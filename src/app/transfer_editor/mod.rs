@@ -6,6 +6,7 @@
 mod backdrop;
 mod fields;
 mod freehand;
+mod label_table;
 mod link;
 mod menus;
 mod plot;
@@ -24,9 +25,9 @@ use super::common::theme;
 use super::common::volume_facts::VolumeFacts;
 use super::text;
 use crate::app::panels::set_linked;
-use crate::data::{DataKind, ValueRange};
+use crate::data::ValueRange;
 use crate::gpu::WindowPainter;
-use crate::model::{LabelTable, Settings, TransferFunction};
+use crate::model::{Settings, TransferFunction};
 
 /// Which curve is edited.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -52,15 +53,6 @@ pub(super) struct TransferEditor {
     span: Span,
     backdrop: Backdrop,
     freehand: Freehand,
-}
-
-/// What stands where the curve would, if labels have looks.
-fn instead_of_labels(ui: &mut Ui, settings: &mut Settings) {
-    ui.label(text::labels::INSTEAD);
-    let curve = text::labels::USE_CURVE;
-    if ui.button(curve.name).on_hover_text(curve.tip).clicked() {
-        settings.labels = LabelTable::default();
-    }
 }
 
 impl TransferEditor {
@@ -97,7 +89,7 @@ impl TransferEditor {
         commands: &mut Vec<Command>,
     ) {
         if volume.is_shown_by_label(settings) {
-            return instead_of_labels(ui, settings);
+            return label_table::show(ui, settings, volume, commands);
         }
         if settings.lighting.linked {
             self.curve = Curve::Eye;
@@ -116,7 +108,7 @@ impl TransferEditor {
             let is_whole = self.curve_tools(ui, settings, volume, span);
             if is_wide {
                 ui.with_layout(from_the_right, |ui| {
-                    self.plot_tools(ui, settings, &volume.kind, commands);
+                    self.plot_tools(ui, settings, volume, commands);
                     if is_whole {
                         self.hint(ui);
                     }
@@ -126,7 +118,7 @@ impl TransferEditor {
         if !is_wide {
             let row = Vec2::new(ui.available_width(), ui.spacing().interact_size.y);
             ui.allocate_ui_with_layout(row, from_the_right, |ui| {
-                self.plot_tools(ui, settings, &volume.kind, commands);
+                self.plot_tools(ui, settings, volume, commands);
             });
         }
         let size = ui.available_size();
@@ -219,7 +211,7 @@ impl TransferEditor {
         &mut self,
         ui: &mut Ui,
         settings: &mut Settings,
-        kind: &DataKind,
+        volume: &VolumeFacts,
         commands: &mut Vec<Command>,
     ) {
         let function = self.edited(settings);
@@ -232,7 +224,7 @@ impl TransferEditor {
         let tick = ui.checkbox(&mut self.log_histogram, log.name).on_hover_text(log.tip);
         menus::found(ui, log, &tick);
         menus::colors(ui, function, commands);
-        menus::presets(ui, kind, commands);
+        menus::presets(ui, &volume.kind, commands);
         self.zoom.button(ui);
     }
 
