@@ -11,6 +11,7 @@ mod looks;
 mod names;
 mod orientation;
 mod panels;
+mod presets;
 mod slices;
 mod snapshots;
 mod thresholds;

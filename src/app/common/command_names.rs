@@ -48,7 +48,7 @@ impl Command {
             Self::TurnRound => text::commands::TURN_ROUND,
             Self::UseRig(rig) => return text::commands::use_rig(rig.name()).into(),
             Self::UsePreset(preset) => {
-                return text::commands::use_preset(preset.domain(), &preset.title()).into();
+                return text::commands::use_preset(preset.title).into();
             }
             Self::UseColors(at, back) => {
                 let name = COLOR_MAPS.get(*at).map_or("", |map| map.name);

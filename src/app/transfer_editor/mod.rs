@@ -10,6 +10,8 @@ mod label_table;
 mod link;
 mod menus;
 mod plot;
+mod preset_menu;
+mod preset_pictures;
 mod selection;
 mod zoom;
 
@@ -18,6 +20,7 @@ use eframe::egui::{self, Key, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo}
 use self::backdrop::{Backdrop, Bars};
 use self::freehand::Freehand;
 use self::plot::Axes;
+use self::preset_menu::PresetMenu;
 use self::selection::{Selection, Shift};
 use self::zoom::{Span, Zoom, limits};
 use super::common::commands::Command;
@@ -53,6 +56,7 @@ pub(super) struct TransferEditor {
     span: Span,
     backdrop: Backdrop,
     freehand: Freehand,
+    presets: PresetMenu,
 }
 
 impl TransferEditor {
@@ -67,6 +71,7 @@ impl TransferEditor {
             zoom: Zoom::default(),
             span: Span::default(),
             freehand: Freehand::default(),
+            presets: PresetMenu::default(),
         }
     }
 }
@@ -224,7 +229,7 @@ impl TransferEditor {
         let tick = ui.checkbox(&mut self.log_histogram, log.name).on_hover_text(log.tip);
         menus::found(ui, log, &tick);
         menus::colors(ui, function, commands);
-        menus::presets(ui, &volume.kind, commands);
+        self.presets.show(ui, settings, volume, commands);
         self.zoom.button(ui);
     }
 

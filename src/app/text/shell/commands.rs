@@ -135,8 +135,8 @@ pub(crate) fn use_rig(rig: &str) -> String {
 }
 
 /// To take a preset.
-pub(crate) fn use_preset(domain: &str, title: &str) -> String {
-    format!("Preset: {domain}, {title}")
+pub(crate) fn use_preset(title: &str) -> String {
+    format!("Preset: {title}")
 }
 
 /// To take the colours of a map, perhaps from its end to its start.
