@@ -112,6 +112,34 @@ fn commands_are_found_by_name() {
     wait_until_idle(&mut harness);
 }
 
+/// What is not there is said, with what is nearest; and where nothing is found.
+#[test]
+fn what_is_missing_is_said() {
+    let mut harness = window();
+    let type_words = |harness: &mut Harness<'_, App>, words: &str| {
+        harness.key_press(egui::Key::Escape);
+        harness.run_steps(2);
+        harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::P);
+        harness.run_steps(3);
+        harness.event(Event::Text(words.to_owned()));
+        harness.run_steps(3);
+    };
+    type_words(&mut harness, "composite");
+    harness.get_by_label_contains("there is no composite");
+    harness.get_by_label_contains("Choose a channel");
+    type_words(&mut harness, "measure");
+    harness.get_by_label_contains("two clicks");
+    type_words(&mut harness, "qwertz");
+    harness.get_by_label("No matches");
+    // The chair has none.
+    type_words(&mut harness, "labels");
+    assert!(harness.query_by_label("Labels").is_none());
+    harness.get_by_label_contains("label maps of other programs");
+    harness.key_press(egui::Key::Escape);
+    harness.run_steps(3);
+    wait_until_idle(&mut harness);
+}
+
 /// Each new light has a place and a colour of its own, and is seen when it shines from a point.
 #[test]
 fn new_lights_are_told_apart() {
