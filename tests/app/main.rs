@@ -11,8 +11,6 @@ mod looks;
 mod names;
 mod orientation;
 mod panels;
-mod presets;
-mod slices;
 mod snapshots;
 mod thresholds;
 mod views;
