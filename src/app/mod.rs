@@ -302,8 +302,7 @@ impl eframe::App for App {
             commands.push(Command::OpenDropped(dropped));
         }
         let facts = self.viewport.facts(&self.compare.looks(&self.settings));
-        let kind = self.volume.as_ref().map(|volume| volume.kind);
-        self.palette.ui(&ctx, self.settings.camera.up, kind, &mut commands);
+        self.palette.ui(&ctx, self.settings.camera.up, self.volume.as_ref(), &mut commands);
         self.chooser.ui(&ctx, self.volume.as_ref(), self.loader.options(), &mut commands);
         self.around(ui, &facts, &mut commands);
         self.picture(ui, &facts, &mut commands);

@@ -83,9 +83,9 @@ fn presets_are_tried_on_the_volume() {
     }
     // The window grows around them.
     harness.run_steps(5);
-    assert!(harness.query_all_by_label_contains("CT: ").count() >= 4);
+    assert!(harness.query_by_label("Use CT angiography").is_some());
     assert_eq!(harness.state().settings(), &before, "trying changes nothing");
-    click(&mut harness, "Use Paper: Lobster");
+    click(&mut harness, "Use Lobster");
     assert_ne!(harness.state().settings().transfer, before.transfer);
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
     harness.run_steps(3);
@@ -109,6 +109,34 @@ fn commands_are_found_by_name() {
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
     harness.run_steps(3);
     assert_eq!(harness.state().settings().lights.len(), lights);
+    wait_until_idle(&mut harness);
+}
+
+/// What is not there is said, with what is nearest; and where nothing is found.
+#[test]
+fn what_is_missing_is_said() {
+    let mut harness = window();
+    let type_words = |harness: &mut Harness<'_, App>, words: &str| {
+        harness.key_press(egui::Key::Escape);
+        harness.run_steps(2);
+        harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::P);
+        harness.run_steps(3);
+        harness.event(Event::Text(words.to_owned()));
+        harness.run_steps(3);
+    };
+    type_words(&mut harness, "composite");
+    harness.get_by_label_contains("there is no composite");
+    harness.get_by_label_contains("Choose a channel");
+    type_words(&mut harness, "measure");
+    harness.get_by_label_contains("two clicks");
+    type_words(&mut harness, "qwertz");
+    harness.get_by_label("No matches");
+    // The chair has none.
+    type_words(&mut harness, "labels");
+    assert!(harness.query_by_label("Labels").is_none());
+    harness.get_by_label_contains("label maps of other programs");
+    harness.key_press(egui::Key::Escape);
+    harness.run_steps(3);
     wait_until_idle(&mut harness);
 }
 

@@ -5,9 +5,10 @@ use std::time::{Duration, Instant};
 use chiaroscuro::app::{App, Options};
 use chiaroscuro::gpu::{LightSearch, Open, Sought, finish_look, first_look};
 use chiaroscuro::model::Settings;
+use eframe::egui::accesskit::Toggled;
 use eframe::egui::{self, Modifiers, vec2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 use crate::harness::{
     PATIENCE, SCENE, beside, click, untouched_window, wait_until, wait_until_idle, window, window_with,
@@ -165,6 +166,11 @@ fn looks_of_a_ct_are_offered_over_its_picture() {
     let bone = harness.state().settings().clone();
     assert_ne!(bone.transfer, before.transfer);
     assert_eq!(bone.camera, before.camera);
+    harness.run_steps(3);
+    let is_marked = |harness: &Harness<'_, App>, title: &str| {
+        harness.get_by_label(title).accesskit_node().toggled() == Some(Toggled::True)
+    };
+    assert!(is_marked(&harness, "Muscle and skin") && !is_marked(&harness, "Bone"), "the one in use");
     click(&mut harness, "Close this row; presets stay in the editor");
     assert!(harness.query_by_label("Muscle and skin").is_none());
     wait_until_idle(&mut harness);

@@ -44,13 +44,18 @@ impl<'a> Alternatives<'a> {
         }
     }
 
+    /// Name that the file gives one of them, if it does.
+    pub(crate) fn name_in_file(&self, at: usize) -> Option<&'a str> {
+        let Of::Several(several) = self.of else { return None };
+        several.offers.get(at).map(|offer| offer.name.as_str()).filter(|name| !name.is_empty())
+    }
+
     /// What one of them is called.
     pub(crate) fn name(&self, at: usize) -> String {
         match self.of {
-            Of::Several(several) => {
-                let name = several.offers.get(at).map_or("", |offer| offer.name.as_str());
-                if name.is_empty() { text::chooser::numbered(several.dimension, at) } else { name.to_owned() }
-            }
+            Of::Several(several) => self
+                .name_in_file(at)
+                .map_or_else(|| text::chooser::numbered(several.dimension, at), str::to_owned),
             Of::Components(components) => match at.checked_sub(first_component(components)) {
                 None => text::chooser::whole(components.whole).to_owned(),
                 Some(component) => text::chooser::component(component, &components),
@@ -125,6 +130,7 @@ mod tests {
         }
         let channels = Alternatives::of(&held, Aspect::Of(Dimension::Channel)).unwrap();
         assert_eq!((channels.name(0), channels.name(1)), ("Channel 1".to_owned(), "GFP".to_owned()));
+        assert_eq!((channels.name_in_file(0), channels.name_in_file(1)), (None, Some("GFP")));
         let other = channels.choice(0);
         assert_eq!((other.channel, other.component), (Some(0), Some(2)), "all else stays");
     }

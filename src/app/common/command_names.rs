@@ -16,21 +16,12 @@ impl Command {
         }
     }
 
-    /// Words by which it is found besides those of its name.
+    /// Words by which it is found besides those of its name, and of the synonyms that the palette knows.
     pub(crate) fn search_words(&self) -> &'static str {
         match self {
-            Self::TurnObject(_) => text::commands::TURN_OBJECT_WORDS,
-            Self::TurnRound => text::commands::TURN_ROUND_WORDS,
             Self::Reveal(place) => words(*place),
-            Self::GoOn => text::commands::GO_ON_WORDS,
-            Self::SaveSettings => text::commands::SAVE_WORDS,
-            Self::Export => text::commands::EXPORT_WORDS,
-            Self::ImportTransfer => text::commands::TRANSFER_WORDS,
-            Self::Solo => text::commands::SOLO_WORDS,
-            Self::Mute => text::commands::MUTE_WORDS,
-            Self::ToggleCompare => text::commands::COMPARE_WORDS,
-            Self::TogglePictureOnly => text::commands::PICTURE_ONLY_WORDS,
-            Self::Scale(_) => text::commands::SCALE_WORDS,
+            // Its domain, and what it is called on the command line.
+            Self::UsePreset(preset) => preset.name,
             _ => "",
         }
     }
@@ -48,7 +39,7 @@ impl Command {
             Self::TurnRound => text::commands::TURN_ROUND,
             Self::UseRig(rig) => return text::commands::use_rig(rig.name()).into(),
             Self::UsePreset(preset) => {
-                return text::commands::use_preset(preset.domain(), &preset.title()).into();
+                return text::commands::use_preset(preset.title).into();
             }
             Self::UseColors(at, back) => {
                 let name = COLOR_MAPS.get(*at).map_or("", |map| map.name);

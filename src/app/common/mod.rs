@@ -8,6 +8,7 @@ pub(super) mod frame;
 pub(super) mod give_up;
 pub(super) mod light_keys;
 pub(super) mod places;
+pub(super) mod preset_use;
 pub(super) mod reveal;
 pub(super) mod shortcuts;
 pub(super) mod theme;

@@ -21,7 +21,7 @@ const fn advanced(section: &'static str, named: Named) -> Place {
 /// Rows of the panels, each with what else it is found by. Of the facts about a volume, its spacing and its values are
 /// not among them: whoever seeks these is led to the corrections of that name.
 pub(crate) const PLACES: &[(Place, &str)] = &[
-    (Place { section: sections::LABELS, row: None, is_advanced: false }, text::found::LABELS),
+    (Place { section: text::labels::TITLE, row: None, is_advanced: false }, text::found::LABELS),
     (row(sections::LIGHTS, text::lights::NAME), text::found::NAME_OF_LIGHT),
     (row(sections::LIGHTS, text::lights::KIND), text::found::KIND_OF_LIGHT),
     (row(sections::LIGHTS, text::lights::INTENSITY), text::found::BRIGHTNESS),
@@ -224,7 +224,8 @@ mod tests {
             let mut before = PLACES[..at].iter().map(|(before, _)| (before.section, before.row));
             assert!(!before.any(|other| other == (place.section, place.row)), "{place:?}");
             let is_section = sections::ALL.contains(&place.section);
-            assert!(is_section || place.section == text::transfer::TITLE, "{place:?}");
+            let is_below = [text::transfer::TITLE, text::labels::TITLE].contains(&place.section);
+            assert!(is_section || is_below, "{place:?}");
             assert!(!words.is_empty() && words.to_lowercase() == **words, "{place:?}: {words}");
         }
     }

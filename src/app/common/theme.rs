@@ -8,6 +8,8 @@ pub(crate) const SIDE_WIDTH: f32 = 316.0;
 pub(crate) const SIDE_WIDTHS: std::ops::RangeInclusive<f32> = 300.0..=560.0;
 /// Height of the transfer function editor in points.
 pub(crate) const EDITOR_HEIGHT: f32 = 158.0;
+/// Height of the table of labels in points, which takes its place: six rows are seen.
+pub(crate) const LABEL_TABLE_HEIGHT: f32 = 230.0;
 /// Width of the labels in front of the controls.
 pub(crate) const LABEL_WIDTH: f32 = 106.0;
 /// Width of a typed value behind a slider.

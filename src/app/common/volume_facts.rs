@@ -137,6 +137,11 @@ impl VolumeFacts {
         LengthUnit::of(self.of.length_unit())
     }
 
+    /// The label that voxels of a value hold, in label maps.
+    pub(crate) fn label_of(&self, value: f64) -> Option<&LabelRow> {
+        self.labels.iter().find(|label| label.number as f64 == value)
+    }
+
     /// Whether pictures with these settings show labels, which have looks by their numbers.
     pub(crate) fn is_shown_by_label(&self, settings: &Settings) -> bool {
         !settings.labels.is_empty() && !self.labels.is_empty()

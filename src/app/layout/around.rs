@@ -51,7 +51,13 @@ impl App {
         let went = self.history.went(&self.settings);
         status::show(ui, facts, self.loader.progress(), exporting, went, &mut self.messages, commands);
         if let Some(volume) = &self.volume {
-            let panel = egui::Panel::bottom("transfer").resizable(true).default_size(theme::EDITOR_HEIGHT);
+            // A table has a height of its own.
+            let (name, height) = if volume.is_shown_by_label(&self.settings) {
+                ("labels", theme::LABEL_TABLE_HEIGHT)
+            } else {
+                ("transfer", theme::EDITOR_HEIGHT)
+            };
+            let panel = egui::Panel::bottom(name).resizable(true).default_size(height);
             let panel = panel.frame(theme::panel(ui));
             let panel = panel.size_range(90.0..=420.0);
             panel.show_collapsible(ui, &mut self.layout.transfer, |ui| {
@@ -81,5 +87,6 @@ impl App {
         dock::reserve(ui);
         self.layout.docked = dock::docked(ui.ctx());
         (self.layout.slices, self.layout.light_slice) = (self.slices.open, self.light_slice.open);
+        self.layout.slice_convention = self.slices.convention;
     }
 }

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::App;
 use super::common::dock;
 use crate::app::text;
+use crate::app::windows::slices::plane::Convention;
 
 /// The name under which it is kept beside what the window toolkit keeps.
 const NAME: &str = "layout";
@@ -32,6 +33,8 @@ pub(crate) struct Layout {
     /// Cuts through the data are shown, and those through light volumes.
     pub slices: bool,
     pub light_slice: bool,
+    /// Side on which cuts through a body show its right.
+    pub slice_convention: Convention,
     /// The folder where the last export went.
     pub exports: Option<PathBuf>,
     /// Dark, light, or as the system is.
@@ -50,6 +53,7 @@ impl Default for Layout {
             docked: BTreeSet::new(),
             slices: false,
             light_slice: false,
+            slice_convention: Convention::default(),
             exports: None,
             theme: ThemePreference::Dark,
             picture_only: false,

@@ -6,6 +6,7 @@ use eframe::egui;
 
 use crate::app::common::commands::Command;
 use crate::app::windows::files::Purpose;
+use crate::app::windows::slices::SliceLook;
 use crate::app::windows::{export, light_slice, recovery, roomy};
 use crate::app::{App, text};
 
@@ -56,7 +57,8 @@ impl App {
         let volume = self.viewport.dataset().map(|dataset| Arc::clone(dataset.volume()));
         let drawn = volume.as_ref().filter(|_| self.slices.open).map(|volume| self.settings.as_drawn(volume));
         let transfer = drawn.as_ref().map_or(&self.settings.transfer, |drawn| &drawn.transfer);
-        self.slices.ui(ctx, volume.as_ref(), self.volume.as_ref(), transfer);
+        let look = SliceLook { transfer, labels: &self.settings.labels };
+        self.slices.ui(ctx, volume.as_ref(), self.volume.as_ref(), look);
         let scene = light_slice::Scene {
             settings: &self.settings,
             dataset: self.viewport.dataset(),

@@ -6,7 +6,6 @@ pub(super) mod controls;
 mod cuts;
 mod data;
 mod floor;
-mod labels;
 mod lights;
 mod sampling;
 mod scattering;
@@ -51,23 +50,12 @@ pub(super) struct Panels<'a> {
     pub commands: &'a mut Vec<Command>,
 }
 
-impl Panels<'_> {
-    /// Whether a table of labels says what is seen.
-    fn is_by_label(&self) -> bool {
-        self.volume.is_some_and(|volume| volume.is_shown_by_label(self.settings))
-    }
-}
-
 /// Shows all sections, in the order in which people work. Whatever they hold, the panel is as wide as it was made.
 pub(super) fn show(ui: &mut egui::Ui, panels: &mut Panels<'_>) {
     let room = ui.available_rect_before_wrap();
     let mut inside = ui.new_child(egui::UiBuilder::new().max_rect(room));
     inside.shrink_clip_rect(room);
-    sections::tabs::show(
-        &mut inside,
-        |title| title != text::sections::LABELS || panels.is_by_label(),
-        |title| sections::is_active(title, panels.settings, panels.compare.on),
-    );
+    sections::tabs::show(&mut inside, |title| sections::is_active(title, panels.settings, panels.compare.on));
     inside.separator();
     all_sections(&mut inside, panels);
     ui.allocate_rect(room, egui::Sense::hover());
@@ -76,9 +64,6 @@ pub(super) fn show(ui: &mut egui::Ui, panels: &mut Panels<'_>) {
 fn all_sections(ui: &mut egui::Ui, panels: &mut Panels<'_>) {
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.add_space(2.0);
-        if panels.is_by_label() {
-            section(ui, text::sections::LABELS, true, panels, labels::show);
-        }
         section(ui, text::sections::LIGHTS, true, panels, lights::show);
         section(ui, text::sections::SHADOWS, true, panels, shadows::show);
         section(ui, text::sections::SOFT_LIGHT, false, panels, |ui, panels| {

@@ -195,7 +195,7 @@ impl App {
                 self.show_section(ctx, text::sections::COMPARE, self.compare.on);
             }
             Command::Reveal(place) => {
-                let is_of_editor = place.section == text::transfer::TITLE;
+                let is_of_editor = [text::transfer::TITLE, text::labels::TITLE].contains(&place.section);
                 *(if is_of_editor { &mut self.layout.transfer } else { &mut self.layout.side }) = true;
                 self.layout.picture_only = false;
                 reveal::reveal(ctx, place);

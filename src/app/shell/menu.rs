@@ -8,7 +8,7 @@ use crate::app::common::theme;
 use crate::app::memory::{EarlierRun, RecentFile, RecentPictures};
 use crate::app::text;
 use crate::app::windows::recovery;
-use crate::data::load::{Aspect, Held};
+use crate::data::load::{Aspect, Dimension, Held};
 use crate::data::{plain, synthetic};
 use crate::model::{MAX_LIGHTS, MAX_NAME, ObjectTurn, Projection, Rig, Settings, StandardView};
 
@@ -95,7 +95,14 @@ fn several(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     let Some(held) = menu.several else { return };
     for aspect in Aspect::ALL.into_iter().rev() {
         let Some(all) = Alternatives::of(held, aspect) else { continue };
-        let label = text::chooser::beside_title(aspect, all.at(), all.count(), &all.name(all.at()));
+        let at = all.at();
+        let named = match aspect {
+            Aspect::Component => Some(all.name(at)),
+            // Series and time steps have long names, or none.
+            Aspect::Of(Dimension::Channel | Dimension::Array) => all.name_in_file(at).map(str::to_owned),
+            Aspect::Of(_) => None,
+        };
+        let label = text::chooser::beside_title(aspect, at, all.count(), named.as_deref());
         if ui.button(label).on_hover_text(text::chooser::command(aspect)).clicked() {
             menu.commands.push(Command::Choose(aspect));
         }

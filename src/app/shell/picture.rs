@@ -157,7 +157,7 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
         light_chips::show(ui, canvas.rect, settings, selected_light, facts, commands);
         // The first hints of all lie there.
         if is_one_view && !hints.on {
-            ct_looks.show(ui, canvas.rect, volume, commands);
+            ct_looks.show(ui, canvas.rect, settings, volume, commands);
         }
     }
     if let Some(dataset) = viewport.dataset().filter(|_| probe.on && is_one_view) {

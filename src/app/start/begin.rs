@@ -79,6 +79,7 @@ impl App {
         app.recovery = Recovery::of(app.memory.earlier(), &cc.egui_ctx);
         app.hints = Hints { on: app.memory.is_first() };
         (app.slices.open, app.light_slice.open) = (app.layout.slices, app.layout.light_slice);
+        app.slices.convention = app.layout.slice_convention;
         app.session_is_due = session.is_some();
         app.session = session.map(Session::named);
         app.adjust = adjust;

@@ -22,7 +22,7 @@ pub(super) use self::panels::{
 pub(super) use self::shell::{changes, commands, memory, menu, messages, opening, status};
 pub(super) use self::viewport::{compared, cut_handles, picture, probe};
 pub(super) use self::windows::{
-    chooser, contact_sheet, export, files, foreign_path, help, light_volume, raw, roomy, slices,
+    chooser, contact_sheet, export, files, foreign_path, help, light_volume, palette, raw, roomy, slices,
 };
 
 /// A control's name, and its tip.

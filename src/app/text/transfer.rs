@@ -39,6 +39,16 @@ pub(crate) const TRY_PRESETS_TIP: &str = "Shows each on your volume";
 pub(crate) const FOR_CT: &str = "For Hounsfield units of CT, which these data are not in; where they count from 1024, \
                                  Data › Corrections › Values can shift them";
 
+/// What a preset is for, if it is for another kind of data.
+pub(crate) fn not_for_these(about: &str) -> String {
+    format!("{about}. {FOR_CT}")
+}
+
+/// What a preset is for, if it is the one in use.
+pub(crate) fn in_use(about: &str) -> String {
+    format!("{about} (in use)")
+}
+
 pub(crate) const COLORS: &str = "Transfer function";
 pub(crate) const COLOR_MAP_TIP: &str = "Colours the visible values";
 pub(crate) const REVERSED: &str = "Reversed";

@@ -6,9 +6,12 @@
 mod backdrop;
 mod fields;
 mod freehand;
+mod label_table;
 mod link;
 mod menus;
 mod plot;
+mod preset_menu;
+mod preset_pictures;
 mod selection;
 mod zoom;
 
@@ -17,6 +20,7 @@ use eframe::egui::{self, Key, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo}
 use self::backdrop::{Backdrop, Bars};
 use self::freehand::Freehand;
 use self::plot::Axes;
+use self::preset_menu::PresetMenu;
 use self::selection::{Selection, Shift};
 use self::zoom::{Span, Zoom, limits};
 use super::common::commands::Command;
@@ -24,9 +28,9 @@ use super::common::theme;
 use super::common::volume_facts::VolumeFacts;
 use super::text;
 use crate::app::panels::set_linked;
-use crate::data::{DataKind, ValueRange};
+use crate::data::ValueRange;
 use crate::gpu::WindowPainter;
-use crate::model::{LabelTable, Settings, TransferFunction};
+use crate::model::{Settings, TransferFunction};
 
 /// Which curve is edited.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -52,15 +56,7 @@ pub(super) struct TransferEditor {
     span: Span,
     backdrop: Backdrop,
     freehand: Freehand,
-}
-
-/// What stands where the curve would, if labels have looks.
-fn instead_of_labels(ui: &mut Ui, settings: &mut Settings) {
-    ui.label(text::labels::INSTEAD);
-    let curve = text::labels::USE_CURVE;
-    if ui.button(curve.name).on_hover_text(curve.tip).clicked() {
-        settings.labels = LabelTable::default();
-    }
+    presets: PresetMenu,
 }
 
 impl TransferEditor {
@@ -75,6 +71,7 @@ impl TransferEditor {
             zoom: Zoom::default(),
             span: Span::default(),
             freehand: Freehand::default(),
+            presets: PresetMenu::default(),
         }
     }
 }
@@ -97,7 +94,7 @@ impl TransferEditor {
         commands: &mut Vec<Command>,
     ) {
         if volume.is_shown_by_label(settings) {
-            return instead_of_labels(ui, settings);
+            return label_table::show(ui, settings, volume, commands);
         }
         if settings.lighting.linked {
             self.curve = Curve::Eye;
@@ -116,7 +113,7 @@ impl TransferEditor {
             let is_whole = self.curve_tools(ui, settings, volume, span);
             if is_wide {
                 ui.with_layout(from_the_right, |ui| {
-                    self.plot_tools(ui, settings, &volume.kind, commands);
+                    self.plot_tools(ui, settings, volume, commands);
                     if is_whole {
                         self.hint(ui);
                     }
@@ -126,7 +123,7 @@ impl TransferEditor {
         if !is_wide {
             let row = Vec2::new(ui.available_width(), ui.spacing().interact_size.y);
             ui.allocate_ui_with_layout(row, from_the_right, |ui| {
-                self.plot_tools(ui, settings, &volume.kind, commands);
+                self.plot_tools(ui, settings, volume, commands);
             });
         }
         let size = ui.available_size();
@@ -219,7 +216,7 @@ impl TransferEditor {
         &mut self,
         ui: &mut Ui,
         settings: &mut Settings,
-        kind: &DataKind,
+        volume: &VolumeFacts,
         commands: &mut Vec<Command>,
     ) {
         let function = self.edited(settings);
@@ -232,7 +229,7 @@ impl TransferEditor {
         let tick = ui.checkbox(&mut self.log_histogram, log.name).on_hover_text(log.tip);
         menus::found(ui, log, &tick);
         menus::colors(ui, function, commands);
-        menus::presets(ui, kind, commands);
+        self.presets.show(ui, settings, volume, commands);
         self.zoom.button(ui);
     }
 

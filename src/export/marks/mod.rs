@@ -8,7 +8,7 @@ mod sides;
 
 pub use self::layer::Layer;
 pub use self::scale_bar::{ScaleBar, scale_bar};
-pub use self::sides::{SIDES, sides};
+pub use self::sides::{SIDES, sides, sides_along};
 use crate::data::Volume;
 use crate::model::{ImageSpec, Settings};
 

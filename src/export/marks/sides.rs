@@ -36,7 +36,13 @@ fn towards(direction: DVec3) -> String {
 /// What of a body lies to the right, to the left, at the top and at the bottom of a picture.
 pub fn sides(camera: &Camera) -> [String; 4] {
     let view = camera.scene_from_view();
-    [view.x_axis, -view.x_axis, view.y_axis, -view.y_axis].map(towards)
+    sides_along(view.x_axis, view.y_axis)
+}
+
+/// Sides of a body at the right, the left, the top and the bottom of something flat, whose right and whose top lie in
+/// these directions of scene space (of length 1).
+pub fn sides_along(right: DVec3, up: DVec3) -> [String; 4] {
+    [right, -right, up, -up].map(towards)
 }
 
 /// Writes them at the edges of a picture.

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use crate::data::load::Dimension;
 use crate::data::{DataKind, Meaning, Modality, Volume};
 
 /// What is shown.
@@ -40,20 +41,24 @@ impl Domain {
         Self::Simulation,
     ];
 
+    /// The field of a volume that is one of several channels of a file: that of the file, of which the values of a channel
+    /// say nothing. `None` where a file holds no channels.
+    pub(super) fn of_channels(volume: &Volume) -> Option<Self> {
+        volume.held().of(Dimension::Channel)?;
+        let is_finer_than_light =
+            !volume.has_unknown_scale() && volume.spacing_mm().max_element() < NANOMETRE;
+        Some(match Self::of_hints(volume) {
+            Some(said) => said,
+            None if volume.is_anatomical() => Self::MagneticResonance,
+            None if is_finer_than_light => Self::Molecule,
+            None => Self::Fluorescence,
+        })
+    }
+
     /// The field of a volume whose object begins at a density.
     pub(super) fn of(volume: &Volume, start: f64) -> Self {
-        let hints = volume.hints();
-        if hints.meaning == Meaning::PositiveDensity {
-            return Self::Molecule;
-        }
-        match hints.modality {
-            Modality::Mr => return Self::MagneticResonance,
-            Modality::ElectronMicroscopy => return Self::Molecule,
-            Modality::LightMicroscopy => return Self::Fluorescence,
-            Modality::Pet | Modality::Nuclear => return Self::Simulation,
-            Modality::Ct if !volume.is_anatomical() && !is_hounsfield(volume) => return Self::Metal,
-            Modality::Ct | Modality::XRay | Modality::Ultrasound => return Self::SoftTissue,
-            Modality::OpticalCoherence | Modality::Segmentation | Modality::Unknown => {}
+        if let Some(said) = Self::of_channels(volume).or_else(|| Self::of_hints(volume)) {
+            return said;
         }
         if is_hounsfield(volume) {
             Self::SoftTissue
@@ -66,7 +71,27 @@ impl Domain {
             Self::Unknown
         }
     }
+
+    /// The field that the file names.
+    fn of_hints(volume: &Volume) -> Option<Self> {
+        let hints = volume.hints();
+        if hints.meaning == Meaning::PositiveDensity {
+            return Some(Self::Molecule);
+        }
+        match hints.modality {
+            Modality::Mr => Some(Self::MagneticResonance),
+            Modality::ElectronMicroscopy => Some(Self::Molecule),
+            Modality::LightMicroscopy => Some(Self::Fluorescence),
+            Modality::Pet | Modality::Nuclear => Some(Self::Simulation),
+            Modality::Ct if !volume.is_anatomical() && !is_hounsfield(volume) => Some(Self::Metal),
+            Modality::Ct | Modality::XRay | Modality::Ultrasound => Some(Self::SoftTissue),
+            Modality::OpticalCoherence | Modality::Segmentation | Modality::Unknown => None,
+        }
+    }
 }
+
+/// Millimetres of a nanometre: no microscope that uses light has voxels as small.
+const NANOMETRE: f64 = 1e-6;
 
 fn is_hounsfield(volume: &Volume) -> bool {
     matches!(volume.kind().kind, DataKind::HounsfieldCt { .. })
@@ -135,5 +160,85 @@ impl Texture {
         let count = found.len() as f64;
         let flat = found.iter().filter(|one| one[1] < 0.2 * slopes / count).count();
         Self { roughness: bends / slopes, flat_share: flat as f64 / count }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::load::{Choice, LoadControl, LoadOptions, load};
+    use crate::data::{Histogram, KindName};
+    use crate::model::TransferFunction;
+    use crate::model::auto::palette::Palette;
+    use crate::model::auto::transfer_as;
+
+    const N: usize = 24;
+
+    /// Channels of one thing: a smooth hill, a ball with a grain, and a dark ball in bright surroundings.
+    fn value(channel: usize, voxel: usize) -> u8 {
+        let away = [voxel % N, voxel / N % N, voxel / N / N].map(|place| place as f64 - 11.5);
+        let radius = away.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let grain = (voxel * 7919 % 40) as u8;
+        let in_ball = radius < 7.0;
+        match channel {
+            0 => (200.0 * (-radius * radius / 40.0).exp()) as u8,
+            1 => {
+                if in_ball {
+                    180 + grain
+                } else {
+                    grain / 4
+                }
+            }
+            _ => {
+                if in_ball {
+                    10 + grain / 4
+                } else {
+                    190 + grain
+                }
+            }
+        }
+    }
+
+    /// A channel of a file of three, or of one that holds it alone.
+    fn channel(at: usize, is_alone: bool) -> Volume {
+        let channels = if is_alone { at..at + 1 } else { 0..3 };
+        // Two times, so that the channels are an axis of their own.
+        let shape = if is_alone { format!("({N}, {N}, {N})") } else { format!("(2, 3, {N}, {N}, {N})") };
+        let header = format!("{{'descr': '|u1', 'fortran_order': False, 'shape': {shape}, }}\n");
+        let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+        bytes.extend(u16::try_from(header.len()).unwrap().to_le_bytes());
+        bytes.extend(header.as_bytes());
+        for _ in 0..if is_alone { 1 } else { 2 } {
+            bytes
+                .extend(channels.clone().flat_map(|channel| (0..N.pow(3)).map(move |at| value(channel, at))));
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("channels.npy");
+        std::fs::write(&path, bytes).unwrap();
+        let several = Choice { channel: Some(at), frame: Some(0), ..Choice::default() };
+        let choice = if is_alone { Choice::default() } else { several };
+        load(&path, &LoadOptions { choice, ..LoadOptions::default() }, &LoadControl::new()).unwrap()
+    }
+
+    fn function(volume: &Volume) -> TransferFunction {
+        // What kind of data a channel is taken for is another matter.
+        let kind = if volume.value(0, 0, 0) > 100.0 { KindName::DarkOnBright } else { KindName::Scalar };
+        transfer_as(volume, &Histogram::of(volume), Some(kind))
+    }
+
+    #[test]
+    fn channels_of_a_file_have_the_colors_of_one_field() {
+        // The darkest colour of a function: where the object begins.
+        let beginning = |at, is_alone| {
+            let points = function(&channel(at, is_alone)).points;
+            let lightness = |color: &[f32; 3]| color.iter().sum::<f32>();
+            let colors = points.into_iter().map(|point| point.color);
+            colors.min_by(|a, b| lightness(a).total_cmp(&lightness(b))).expect("points")
+        };
+        let alone = [0, 1, 2].map(|at| beginning(at, true));
+        assert_ne!(alone[0], alone[1], "by their values they are of different fields");
+        assert_eq!([0, 1, 2].map(|at| beginning(at, false)), [Palette::of(Domain::Fluorescence).at(0.0); 3]);
+        assert_eq!(Domain::of_channels(&channel(0, true)), None);
+        assert_eq!(Domain::of_channels(&channel(0, false)), Some(Domain::Fluorescence));
     }
 }

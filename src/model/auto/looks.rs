@@ -3,6 +3,7 @@
 
 use glam::DVec3;
 
+use super::domain::Domain;
 use super::threshold::otsu;
 use super::{LEAST_SHOWN, above, floor_color, frame, transfer};
 use crate::data::{Histogram, Volume};
@@ -85,12 +86,15 @@ pub fn looks(first: &Settings, volume: &Volume, histogram: &Histogram) -> Vec<Pr
     all.push(proposal("Translucent", "less opaque: what lies behind shows through", thin));
     let has_veil = veil_end(&first.transfer);
     if let Some(start) = has_veil.or_else(|| inner_start(&first.transfer, volume, histogram)) {
-        let inner = Settings { transfer: transfer::inner(&first.transfer, start), ..first.clone() };
+        let channels = Domain::of_channels(volume);
+        let inner = transfer::inner(&first.transfer, start, channels);
+        let inner = Settings { transfer: inner, ..first.clone() };
         all.push(proposal("Inner structure", "only the densest material", framed(inner, first, volume)));
         if has_veil.is_some() {
             return sane(all);
         }
-        let veil = Settings { transfer: transfer::veiled(&first.transfer, start, VEIL), ..first.clone() };
+        let veil = transfer::veiled(&first.transfer, start, VEIL, channels);
+        let veil = Settings { transfer: veil, ..first.clone() };
         all.push(proposal("Veil", "the outside is a veil around the densest material", veil));
     }
     sane(all)

@@ -15,39 +15,45 @@ use crate::model::{PresetError, Settings, apply_json};
 pub struct Preset {
     /// `domain/name`, as `--preset` takes it.
     pub name: &'static str,
+    /// Name in menus, which no other preset has.
+    pub title: &'static str,
     text: &'static str,
 }
 
 macro_rules! presets {
-    ($($name:literal),+ $(,)?) => {
-        [$(Preset { name: $name, text: include_str!(concat!("../../../presets/", $name, ".json")) }),+]
+    ($($name:literal: $title:literal),+ $(,)?) => {
+        [$(Preset {
+            name: $name,
+            title: $title,
+            text: include_str!(concat!("../../../presets/", $name, ".json")),
+        }),+]
     };
 }
 
 /// All of them, domain by domain.
 pub const PRESETS: [Preset; 22] = presets![
-    "ct/bone",
-    "ct/muscle_and_skin",
-    "ct/angiography",
-    "ct/lung",
-    "mr/head",
-    "mr/angiography",
-    "microscopy/fluorescence",
-    "microscopy/stained_tissue",
-    "simulation/fuel",
-    "simulation/cloud",
-    "simulation/signed",
-    "light/studio",
-    "light/overcast",
-    "light/window",
-    "light/hollows",
-    "light/wax",
-    "light/cloud",
-    "light/ink_drawing",
-    "paper/lobster",
-    "paper/fuel",
-    "paper/chair",
-    "bench/creature",
+    "ct/bone": "Bone",
+    "ct/muscle_and_skin": "Muscle and skin",
+    "ct/angiography": "CT angiography",
+    "ct/lung": "Lung",
+    "mr/head": "Head",
+    "mr/angiography": "MR angiography",
+    "microscopy/fluorescence": "Fluorescence",
+    "microscopy/stained_tissue": "Stained tissue",
+    "simulation/fuel": "Spray",
+    "simulation/cloud": "Vapour",
+    "simulation/signed": "Negative and positive",
+    "light/studio": "Studio",
+    "light/overcast": "Overcast",
+    "light/window": "Window light",
+    "light/hollows": "Hollows",
+    "light/wax": "Wax",
+    "light/cloud": "Sunlit cloud",
+    "light/ink_drawing": "Ink drawing",
+    "paper/lobster": "Lobster",
+    "paper/fuel": "Fuel injection",
+    "paper/chair": "Chair",
+    "bench/creature": "Creature",
 ];
 
 impl Preset {
@@ -66,24 +72,17 @@ impl Preset {
         self.name.split_once('/').map_or("", |(domain, _)| domain)
     }
 
-    /// What the domain is called: in short, and over a list.
-    pub fn domain_titles(&self) -> [&'static str; 2] {
+    /// What the domain is called over a list.
+    pub fn domain_title(&self) -> &'static str {
         match self.domain() {
-            "ct" => ["CT", "CT (Hounsfield units)"],
-            "mr" => ["MR", "Magnetic resonance"],
-            "microscopy" => ["Microscopy"; 2],
-            "simulation" => ["Simulation"; 2],
-            "light" => ["Light", "Light, for any data"],
-            "paper" => ["Paper", "Splatting with shadows"],
-            other => [other; 2],
+            "ct" => "CT (Hounsfield units)",
+            "mr" => "Magnetic resonance",
+            "microscopy" => "Microscopy",
+            "simulation" => "Simulation",
+            "light" => "Light, for any data",
+            "paper" => "Splatting with shadows",
+            other => other,
         }
-    }
-
-    /// The name in its domain, for menus.
-    pub fn title(&self) -> String {
-        let title = self.name.split_once('/').map_or(self.name, |(_, title)| title).replace('_', " ");
-        let mut letters = title.chars();
-        letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
     }
 
     /// Whether it has something to show in data of a kind: presets of CT name Hounsfield units, and show nothing or a brick
@@ -105,6 +104,11 @@ impl Preset {
     pub fn apply(&self, settings: &Settings, ranges: &ValueRanges) -> Result<Settings, PresetError> {
         let overlay: Value = serde_json::from_str(self.text).map_err(PresetError::Syntax)?;
         apply_relative(settings, &overlay, ranges).map(|(settings, _)| settings)
+    }
+
+    /// Whether settings for a volume with these values are as the preset makes them: to lay it over them changes nothing.
+    pub fn is_in_use(&self, settings: &Settings, ranges: &ValueRanges) -> bool {
+        self.apply(settings, ranges).is_ok_and(|applied| applied == *settings)
     }
 }
 
@@ -171,7 +175,45 @@ mod tests {
             // Light is for any curve.
             let is_seen = points.iter().any(|point| point.opacity > 0.05);
             assert!(is_seen || preset.domain() == "light" && settings.sky.is_on(), "{}", preset.name);
-            assert!(!preset.about().is_empty() && !preset.title().is_empty() && !preset.domain().is_empty());
+            assert!(!preset.about().is_empty() && !preset.title.is_empty() && !preset.domain().is_empty());
+        }
+    }
+
+    #[test]
+    fn no_two_presets_have_the_same_title() {
+        for (at, preset) in PRESETS.iter().enumerate() {
+            let others = &PRESETS[..at];
+            let is_other = |other: &Preset| !other.title.eq_ignore_ascii_case(preset.title);
+            assert!(others.iter().all(is_other), "{}: {}", preset.name, preset.title);
+        }
+    }
+
+    #[test]
+    fn names_of_the_command_line_stay() {
+        for name in ["simulation/cloud", "light/cloud", "simulation/fuel", "paper/fuel", "ct/angiography"] {
+            assert_eq!(Preset::find(name).map(|preset| preset.name), Some(name));
+        }
+    }
+
+    #[test]
+    fn presets_are_in_use_until_something_of_them_changes() {
+        let ranges =
+            ValueRanges { all: ValueRange::new(-1024.0, 3000.0), robust: ValueRange::new(-1000.0, 1200.0) };
+        for preset in PRESETS {
+            let first = Settings::default();
+            assert!(!preset.is_in_use(&first, &ranges), "{}", preset.name);
+            let mut used = preset.apply(&first, &ranges).unwrap();
+            used.sanitise();
+            assert!(preset.is_in_use(&used, &ranges), "{}", preset.name);
+            // Where it says nothing of the camera, that may turn.
+            used.camera.azimuth_deg += 20.0;
+            assert_eq!(preset.is_in_use(&used, &ranges), preset.domain() != "bench", "{}", preset.name);
+            for point in &mut used.transfer.points {
+                point.opacity *= 0.5;
+            }
+            used.sky.intensity += 0.1;
+            used.scattering.bounces += 1;
+            assert!(!preset.is_in_use(&used, &ranges), "{}", preset.name);
         }
     }
 

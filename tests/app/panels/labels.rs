@@ -5,7 +5,7 @@ use eframe::egui::{self, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{click, picture, wait_until_idle, window_with};
+use crate::harness::{click, picture, press as press_at, wait_until_idle, window_with};
 
 /// Voxels along each edge of the label map.
 const N: usize = 24;
@@ -67,6 +67,36 @@ fn labels_are_hidden_and_shown_by_their_rows() {
     assert_eq!(visible(&harness), [3, 9, 200], "but not what is around them");
     press(&mut harness, "Hide listed");
     assert_eq!(visible(&harness), [0; 0]);
+    assert_eq!(harness.state().errors(), [""; 0]);
+}
+
+/// The table lies below the picture, with a header over its columns, and what is under the pointer is named.
+#[test]
+fn the_table_is_below_the_picture_and_the_probe_names_labels() {
+    let (mut harness, _folder) = window_of(&[9, 9, 9]);
+    let (picture, _) = harness.state().viewport_rect().expect("a picture");
+    let row = harness.get_by_label("Show label 9").rect();
+    assert!(row.top() > picture.bottom() && row.left() < picture.center().x, "{row} below {picture}");
+    for column in ["Show", "Colour", "Label", "Name", "Voxels", "Opacity"] {
+        // The side panel has names and colours, too.
+        let mut heads = harness.query_all_by_label(column).map(|node| node.rect());
+        let is_over = heads.any(|head| head.bottom() <= row.top() && head.top() > picture.bottom());
+        assert!(is_over, "{column}");
+    }
+    assert!(harness.query_by_label("Go to Labels").is_none(), "there is one table");
+    harness.key_press(egui::Key::I);
+    harness.run_steps(2);
+    harness.hover_at(picture.center());
+    harness.run_steps(3);
+    harness.get_by_label("Label 9: Left lung");
+    press_at(&mut harness, picture.center(), 1);
+    harness.run_steps(3);
+    harness.get_by_label("Label 9: Left lung");
+    harness.get_by_label_contains(" %\nvoxel ");
+    harness.key_press(egui::Key::D);
+    harness.run_steps(3);
+    harness.get_by_label("9 · Left lung");
+    wait_until_idle(&mut harness);
     assert_eq!(harness.state().errors(), [""; 0]);
 }
 

@@ -2,7 +2,9 @@
 
 mod labels;
 mod layout;
+mod presets;
 mod side;
+mod slices;
 mod surroundings;
 
 use chiaroscuro::app::{App, Options};

@@ -3,9 +3,7 @@
 use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2, vec2};
 use std::f32::consts::{PI, TAU};
 
-use crate::app::text::sections::{
-    CAMERA, COMPARE, CUTS, DATA, FLOOR, LABELS, LIGHTS, SHADING, SHADOWS, SOFT_LIGHT,
-};
+use crate::app::text::sections::{CAMERA, COMPARE, CUTS, DATA, FLOOR, LIGHTS, SHADING, SHADOWS, SOFT_LIGHT};
 
 /// Points from the middle of a drawing to its edges.
 const REACH: f32 = 7.0;
@@ -52,10 +50,6 @@ pub(super) fn paint(painter: &Painter, title: &str, middle: Pos2, ink: Color32) 
     let pen = Pen { painter, middle, ink };
     let (empty, half) = (Color32::TRANSPARENT, ink.gamma_multiply(0.45));
     match title {
-        LABELS => {
-            pen.closed(&[[-0.9, -0.5], [0.2, -0.5], [0.9, 0.0], [0.2, 0.5], [-0.9, 0.5]], half);
-            pen.circle(0.25, 0.0, 0.12, empty);
-        }
         LIGHTS => {
             pen.circle(0.0, 0.0, 0.4, half);
             for ray in 0..8 {

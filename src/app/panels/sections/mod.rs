@@ -3,9 +3,7 @@
 mod icons;
 pub(super) mod tabs;
 
-use crate::app::text::sections::{
-    CAMERA, COMPARE, CUTS, DATA, FLOOR, LABELS, LIGHTS, SHADING, SHADOWS, SOFT_LIGHT,
-};
+use crate::app::text::sections::{CAMERA, COMPARE, CUTS, DATA, FLOOR, LIGHTS, SHADING, SHADOWS, SOFT_LIGHT};
 use crate::model::{Settings, Shadows};
 
 /// Whether something is on in a section that usually is off, so that its header shows it.
@@ -24,7 +22,6 @@ pub(super) fn is_active(title: &str, settings: &Settings, compares: bool) -> boo
 /// looks, have nothing to put back.
 pub(super) fn put_back(title: &str, settings: &mut Settings, first: &Settings) {
     match title {
-        LABELS => settings.labels = first.labels.clone(),
         // Lights stand around the object as it stood.
         LIGHTS if settings.camera.up == first.camera.up => settings.lights.clone_from(&first.lights),
         SHADOWS => {
@@ -87,8 +84,7 @@ mod tests {
         settings.camera.azimuth_deg = 12.0;
         settings.shading.diffuse = 0.1;
         settings.sky.mode = crate::model::SkyMode::White;
-        settings.labels.entry(3).visible = false;
-        let changed = [LABELS, LIGHTS, SHADOWS, SOFT_LIGHT, SHADING, CUTS, FLOOR, CAMERA];
+        let changed = [LIGHTS, SHADOWS, SOFT_LIGHT, SHADING, CUTS, FLOOR, CAMERA];
         for title in text::sections::ALL {
             assert_eq!(differs(title, &settings, &first), changed.contains(&title), "{title}");
         }

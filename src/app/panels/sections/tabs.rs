@@ -11,17 +11,12 @@ use crate::app::text::sections::ALL;
 /// Height of a drawing's button in points.
 const HEIGHT: f32 = 24.0;
 
-/// Shows one drawing for each section that `is_there`, with a dot where `is_active`.
-pub(in crate::app::panels) fn show(
-    ui: &mut Ui,
-    is_there: impl Fn(&str) -> bool,
-    is_active: impl Fn(&str) -> bool,
-) {
-    let titles: Vec<_> = ALL.into_iter().filter(|title| is_there(title)).collect();
-    let size = Vec2::new(ui.available_width() / titles.len() as f32, HEIGHT);
+/// Shows one drawing for each section, with a dot where `is_active`.
+pub(in crate::app::panels) fn show(ui: &mut Ui, is_active: impl Fn(&str) -> bool) {
+    let size = Vec2::new(ui.available_width() / ALL.len() as f32, HEIGHT);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 0.0;
-        for title in titles {
+        for title in ALL {
             let (area, response) = ui.allocate_exact_size(size, Sense::click());
             response.widget_info(|| WidgetInfo::labeled(Role::Button, true, text::sections::go_to(title)));
             let visuals = *ui.style().interact(&response);

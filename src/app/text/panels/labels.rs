@@ -1,4 +1,4 @@
-//! The section of the labels, and what the transfer editor says of them.
+//! The table of labels, which stands in the place of the transfer function editor.
 
 use crate::app::text::{Named, named};
 
@@ -13,8 +13,19 @@ pub(crate) const VISIBLE_TIP: &str = "Whether it is there at all, for the eye an
 pub(crate) const OPACITY_TIP: &str = "Per opacity unit";
 pub(crate) const NAME_HINT: &str = "unnamed";
 
-/// In place of the curve.
-pub(crate) const INSTEAD: &str = "Labels have a table of looks instead of a curve: see Labels in the panel";
+/// Where labels are sought by name.
+pub(crate) const TITLE: &str = "Labels";
+
+/// What stands over the columns.
+pub(crate) const SHOW_COLUMN: Named = named("Show", VISIBLE_TIP);
+pub(crate) const COLOR_COLUMN: Named = named("Colour", "What it looks like");
+pub(crate) const NUMBER_COLUMN: Named = named("Label", "What voxels hold; a click shows that one alone");
+pub(crate) const NAME_COLUMN: Named = named("Name", "That of the file, until you give it another");
+pub(crate) const VOXELS_COLUMN: Named = named("Voxels", "How many hold it");
+pub(crate) const OPACITY_COLUMN: Named = named("Opacity", OPACITY_TIP);
+
+pub(crate) const AUTOMATIC: Named =
+    named("Automatic", "Puts back the looks with which the labels were opened");
 pub(crate) const USE_CURVE: Named =
     named("Use a curve", "Shows numbers as values, by a curve; Automatic brings the table back");
 
@@ -44,10 +55,35 @@ pub(crate) fn count(listed: usize, all: usize) -> String {
     if listed == all { format!("{all} labels") } else { format!("{listed} of {all} labels") }
 }
 
+/// How many voxels hold a label, in groups of three digits.
+pub(crate) fn voxels(count: u64) -> String {
+    let digits = count.to_string();
+    let mut grouped = String::new();
+    for (at, digit) in digits.chars().enumerate() {
+        if at > 0 && (digits.len() - at).is_multiple_of(3) {
+            // Narrow, and no line ends there.
+            grouped.push('\u{202f}');
+        }
+        grouped.push(digit);
+    }
+    grouped
+}
+
 /// What a label's number tells when it is pointed at: its name, how much there is of it, and with which label it shares
 /// its look, if it does.
 pub(crate) fn facts(name: &str, voxels: u64, shares_with: Option<i64>) -> String {
     let name = if name.is_empty() { String::new() } else { format!("{name}: ") };
     let shares = shares_with.map_or_else(String::new, |other| format!(", with the look of label {other}"));
     format!("{name}{voxels} voxels{shares}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn voxels_are_grouped_by_thousands() {
+        let plain = |count| voxels(count).replace('\u{202f}', " ");
+        assert_eq!([0, 999, 1000, 1_234_567].map(plain), ["0", "999", "1 000", "1 234 567"]);
+    }
 }

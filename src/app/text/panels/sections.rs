@@ -1,6 +1,5 @@
 //! The titles of the side panel's sections.
 
-pub(crate) const LABELS: &str = "Labels";
 pub(crate) const LIGHTS: &str = "Lights";
 pub(crate) const SHADOWS: &str = "Shadows";
 pub(crate) const SOFT_LIGHT: &str = "Sky and scattering";
@@ -12,8 +11,7 @@ pub(crate) const COMPARE: &str = "Compare";
 pub(crate) const DATA: &str = "Data";
 
 /// All of them, in the order in which they are shown.
-pub(crate) const ALL: [&str; 10] =
-    [LABELS, LIGHTS, SHADOWS, SOFT_LIGHT, SHADING, CUTS, FLOOR, CAMERA, COMPARE, DATA];
+pub(crate) const ALL: [&str; 9] = [LIGHTS, SHADOWS, SOFT_LIGHT, SHADING, CUTS, FLOOR, CAMERA, COMPARE, DATA];
 
 /// What leads to a section.
 pub(crate) fn go_to(title: &str) -> String {

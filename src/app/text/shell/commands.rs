@@ -31,9 +31,7 @@ pub(crate) const SHOW_PALETTE: &str = "Find a command…";
 pub(crate) const RESET_VIEW: &str = "Reset view";
 pub(crate) const FRAME_ALL: &str = "Frame all";
 pub(crate) const TURN_OBJECT: &str = "Stand up or lay down";
-pub(crate) const TURN_OBJECT_WORDS: &str = "flip tip over upside down rotate 90° turn object orientation";
 pub(crate) const TURN_ROUND: &str = "Turn round by a quarter";
-pub(crate) const TURN_ROUND_WORDS: &str = "rotate 90° around spin object orientation";
 pub(crate) const TOGGLE_PROJECTION: &str = "Perspective or orthographic";
 pub(crate) const TOGGLE_FULL_SCREEN: &str = "Full screen";
 pub(crate) const TOGGLE_SIDE: &str = "Side panel";
@@ -44,11 +42,9 @@ pub(crate) const GO_TO_KEPT: &str = "Go to what is kept";
 pub(crate) const EXPORT_KEPT: &str = "Contact sheet of what is kept…";
 pub(crate) const TOGGLE_TRANSFER: &str = "Transfer function editor";
 pub(crate) const PICTURE_ONLY: &str = "Picture only";
-pub(crate) const PICTURE_ONLY_WORDS: &str = "hide panels distraction free presentation zen maximise";
 pub(crate) const LARGER: &str = "Larger interface";
 pub(crate) const SMALLER: &str = "Smaller interface";
 pub(crate) const USUAL_SIZE: &str = "Interface as large as usual";
-pub(crate) const SCALE_WORDS: &str = "zoom text font size dpi scale reset";
 pub(crate) const TOGGLE_HANDLES: &str = "Handles";
 pub(crate) const TOGGLE_OVERLAY: &str = "Overlays";
 pub(crate) const TOGGLE_PROBE: &str = "Why is this dark? (probe)";
@@ -65,14 +61,6 @@ pub(crate) const ADD_LIGHT: &str = "Add light";
 pub(crate) const USE_LIGHTS: &str = "Use lights";
 pub(crate) const USE_LOOK: &str = "Use look";
 pub(crate) const TRY_LOOKS: &str = "Try looks…";
-/// What else commands are found by.
-pub(crate) const GO_ON_WORDS: &str = "go on where you left off continue resume restore";
-pub(crate) const SAVE_WORDS: &str = "save settings";
-pub(crate) const EXPORT_WORDS: &str = "screenshot save picture image figure render turntable video movie";
-pub(crate) const TRANSFER_WORDS: &str = "load colormap colour map lut tf";
-pub(crate) const SOLO_WORDS: &str = "solo alone others off";
-pub(crate) const MUTE_WORDS: &str = "mute switch disable enable";
-pub(crate) const COMPARE_WORDS: &str = "before after split side by side difference";
 
 /// Where something is set.
 pub(crate) fn reveal(section: &str, row: Option<&str>) -> String {
@@ -104,7 +92,7 @@ pub(crate) const EXPORT_TRANSFER: &str = "Export transfer function…";
 /// The window in which a command is found, and its field.
 pub(crate) const FIND: &str = "Find a command";
 pub(crate) const FIND_HINT: &str = "What do you want to do?";
-pub(crate) const NOTHING_FOUND: &str = "Nothing is called like that";
+pub(crate) const NOTHING_FOUND: &str = "No matches";
 
 /// To show all voxels of the file, every so manyth, or means of blocks.
 pub(crate) fn thin(thinning: Thinning) -> String {
@@ -135,8 +123,8 @@ pub(crate) fn use_rig(rig: &str) -> String {
 }
 
 /// To take a preset.
-pub(crate) fn use_preset(domain: &str, title: &str) -> String {
-    format!("Preset: {domain}, {title}")
+pub(crate) fn use_preset(title: &str) -> String {
+    format!("Preset: {title}")
 }
 
 /// To take the colours of a map, perhaps from its end to its start.

@@ -18,16 +18,26 @@ pub(crate) fn found(value: f64, decimals: usize, opacity: f64, place: &str) -> S
     format!("Value {value:.decimals$}, opacity {:.0} %\n{place}", 100.0 * opacity)
 }
 
-/// The label that is there, and as [`found`].
-pub(crate) fn found_label(number: i64, name: &str, opacity: f64, place: &str) -> String {
-    let name = if name.is_empty() { String::new() } else { format!(": {name}") };
-    format!("Label {number}{name}, opacity {:.0} %\n{place}", 100.0 * opacity)
+/// The label that is there.
+pub(crate) fn label(number: i64, name: &str) -> String {
+    if name.is_empty() { format!("Label {number}") } else { format!("Label {number}: {name}") }
 }
 
-/// A voxel, and its place in the world.
-pub(crate) fn place([i, j, k]: [f64; 3], world_mm: [f64; 3], unit: LengthUnit) -> String {
+/// As [`found`], of a label.
+pub(crate) fn found_label(opacity: f64, place: &str) -> String {
+    format!("Opacity {:.0} %\n{place}", 100.0 * opacity)
+}
+
+/// A voxel, and its place in the world; of a body from left to right, from back to front and from feet to head.
+pub(crate) fn place(
+    [i, j, k]: [f64; 3],
+    world_mm: [f64; 3],
+    unit: LengthUnit,
+    is_anatomical: bool,
+) -> String {
     let [x, y, z] = world_mm.map(|length| length / unit.mm);
-    format!("voxel {i:.0}, {j:.0}, {k:.0} · {x:.1}, {y:.1}, {z:.1}{}", unit.suffix)
+    let space = if is_anatomical { " RAS" } else { "" };
+    format!("voxel {i:.0}, {j:.0}, {k:.0} · {x:.1}, {y:.1}, {z:.1}{}{space}", unit.suffix)
 }
 
 /// A light, and what of it gets there or why nothing does.

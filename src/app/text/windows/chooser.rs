@@ -90,11 +90,21 @@ pub(crate) fn present(at: usize, count: usize, name: &str) -> String {
     format!("{} of {count} · {name}", at + 1)
 }
 
-/// What is shown, beside the name of the file: a component by its name, all else by its number.
-pub(crate) fn beside_title(aspect: Aspect, at: usize, count: usize, name: &str) -> String {
-    match aspect {
-        Aspect::Component => name.to_owned(),
-        Aspect::Of(_) => format!("{} {}", row(aspect).name, place(at, count)),
+/// Characters of a name beside the name of the file: dyes and arrays have as many.
+const LONGEST_BESIDE_TITLE: usize = 20;
+
+/// What is shown, beside the name of the file: a component by its name, all else by its number, with its name where it has
+/// one.
+pub(crate) fn beside_title(aspect: Aspect, at: usize, count: usize, name: Option<&str>) -> String {
+    let name = name.unwrap_or_default();
+    if aspect == Aspect::Component {
+        return name.to_owned();
+    }
+    let place = format!("{} {}", row(aspect).name, place(at, count));
+    match name.char_indices().nth(LONGEST_BESIDE_TITLE) {
+        _ if name.is_empty() => place,
+        Some((end, _)) => format!("{place} · {}…", name[..end].trim_end()),
+        None => format!("{place} · {name}"),
     }
 }
 
@@ -120,3 +130,17 @@ pub(crate) const KEEP_LOOK: Named = named(
     "Keep the look",
     "View, lights and transfer function stay as they are; otherwise a first look is made for what is chosen",
 );
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_stand_behind_numbers_as_far_as_there_is_room() {
+        let channel = |name| beside_title(Aspect::Of(Dimension::Channel), 0, 3, name);
+        assert_eq!(channel(None), "Channel 1 of 3");
+        assert_eq!(channel(Some("DAPI")), "Channel 1 of 3 · DAPI");
+        assert_eq!(channel(Some("Phalloidin, Alexa Fluor 568")), "Channel 1 of 3 · Phalloidin, Alexa Fl…");
+        assert_eq!(beside_title(Aspect::Component, 1, 3, Some("Green")), "Green");
+    }
+}

@@ -46,11 +46,6 @@ pub(crate) fn at_hour(light: &str, hour: u32) -> String {
     format!("{light} at {hour} o'clock")
 }
 
-/// A preset of a domain.
-pub(crate) fn preset(domain: &str, title: &str) -> String {
-    format!("{domain}: {title}")
-}
-
 /// The system is out of threads.
 pub(crate) fn no_thread(err: impl Display) -> String {
     format!("no thread for the pictures: {err}")

@@ -13,7 +13,7 @@ use crate::app::common::frame;
 use crate::app::common::theme;
 use crate::app::common::volume_facts::decimals;
 use crate::app::text::{self, common::LengthUnit};
-use crate::data::Volume;
+use crate::data::{DataKind, Volume};
 use crate::model::{Camera, Light, LightKind, Settings};
 use crate::plan::{Arrival, Probe, probe};
 
@@ -111,6 +111,7 @@ impl LightProbe {
             Some(place(&settings.camera, picture, blocked)? - at)
         });
         let shown = Tag {
+            subject: found.and_then(|found| label(settings, volume, found)),
             cause,
             cures: cause.filter(|_| pinned.is_some()).map(|cause| cause.cures(settings)).unwrap_or_default(),
             sentence: cause.map_or_else(
@@ -166,18 +167,36 @@ pub(crate) fn seen_at(volume: &Volume, settings: &Settings, picture: Rect, at: P
     probe(volume, settings, origin, direction)
 }
 
+/// The label that is seen, by its number and its name; `None` where values are no labels.
+fn label(settings: &Settings, volume: &Volume, found: &Probe) -> Option<String> {
+    let is_by_curve = settings.labels.is_empty();
+    // Of other data they would be counted first, for seconds.
+    if is_by_curve && !matches!(volume.kind().kind, DataKind::LabelMap { .. }) {
+        return None;
+    }
+    volume.labels()?;
+    let number = if is_by_curve {
+        // A curve mixes numbers: what is there is what the nearest voxel holds.
+        let last = volume.dims().map(|n| n - 1);
+        let [x, y, z] = [0, 1, 2].map(|axis| (found.index[axis].round().max(0.0) as usize).min(last[axis]));
+        volume.value(x, y, z)
+    } else {
+        found.value
+    } as i64;
+    let named = settings.labels.get(number).map(|look| look.name.as_str()).filter(|name| !name.is_empty());
+    let in_file = volume.hints().labels.get(number).map(|label| label.name.as_str());
+    Some(text::probe::label(number, named.or(in_file).unwrap_or_default()))
+}
+
 /// The answer in words and numbers.
 fn answer(settings: &Settings, volume: &Volume, found: &Probe) -> String {
     let unit = unit_of(volume);
-    let place = text::probe::place(found.index.to_array(), found.world_mm.to_array(), unit);
+    let place =
+        text::probe::place(found.index.to_array(), found.world_mm.to_array(), unit, volume.is_anatomical());
     let mut words = if settings.labels.is_empty() || volume.labels().is_none() {
         text::probe::found(found.value, decimals(volume.table_range()), found.opacity, &place)
     } else {
-        let number = found.value as i64;
-        let named =
-            settings.labels.get(number).map(|look| look.name.as_str()).filter(|name| !name.is_empty());
-        let in_file = volume.hints().labels.get(number).map(|label| label.name.as_str());
-        text::probe::found_label(number, named.or(in_file).unwrap_or_default(), found.opacity, &place)
+        text::probe::found_label(found.opacity, &place)
     };
     for (light, arrival) in settings.lights.iter().zip(&found.lights) {
         words.push('\n');
@@ -270,6 +289,42 @@ fn place(camera: &Camera, picture: Rect, point: DVec3) -> Option<Pos2> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::Samples;
+    use crate::model::LabelLook;
+
+    #[test]
+    fn labels_are_named_where_they_are_seen() {
+        const N: usize = 16;
+        let value = |at: usize| {
+            let place = [at % N, at / N % N, at / N / N];
+            if place.iter().all(|c| (3..13).contains(c)) { if place[0] < 8 { 3 } else { 9 } } else { 0 }
+        };
+        let samples = Samples::U8((0..N.pow(3)).map(value).collect());
+        let volume = Volume::with_spacing("t", [N; 3], DVec3::ONE, samples).unwrap();
+        let mut settings = Settings::default();
+        let named =
+            |number, name: &str| (number, LabelLook { name: name.to_owned(), ..LabelLook::of(number) });
+        settings.labels = [named(3, "Liver"), named(9, "")].into_iter().collect();
+        // From the side of the low numbers, and from the other.
+        let said = |settings: &Settings, from: f64| {
+            let found =
+                probe(&volume, settings, DVec3::X * from, DVec3::X * -from.signum()).expect("a label");
+            label(settings, &volume, &found)
+        };
+        assert_eq!(said(&settings, -3.0).as_deref(), Some("Label 3: Liver"));
+        assert_eq!(said(&settings, 3.0).as_deref(), Some("Label 9"));
+        let grey = Volume::with_spacing("t", [N; 3], DVec3::ONE, Samples::F32(vec![0.5; N.pow(3)])).unwrap();
+        let found = Probe {
+            point: DVec3::ZERO,
+            index: DVec3::ONE,
+            world_mm: DVec3::ONE,
+            value: 0.5,
+            opacity: 1.0,
+            lights: Vec::new(),
+            sky: None,
+        };
+        assert_eq!(label(&Settings::default(), &grey, &found), None);
+    }
 
     #[test]
     fn every_darkness_has_its_reason() {

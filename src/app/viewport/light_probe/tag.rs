@@ -14,6 +14,8 @@ const WIDEST: f32 = 320.0;
 
 /// What a tag says.
 pub(super) struct Tag {
+    /// What is there, by its name: of label maps, the label.
+    pub subject: Option<String>,
     pub cause: Option<Cause>,
     /// What helps.
     pub cures: Vec<Cure>,
@@ -52,7 +54,15 @@ pub(super) fn show(ui: &Ui, picture: Rect, at: Pos2, tag: &Tag) -> Option<Cure> 
     area.show(ui.ctx(), |ui| {
         egui::Frame::popup(ui.style()).show(ui, |ui| {
             ui.set_max_width(WIDEST.min(picture.width() - 40.0));
-            ui.label(RichText::new(&tag.sentence).strong());
+            match &tag.subject {
+                Some(subject) => {
+                    ui.label(RichText::new(subject).strong());
+                    ui.label(&tag.sentence);
+                }
+                None => {
+                    ui.label(RichText::new(&tag.sentence).strong());
+                }
+            }
             if let Some(distance) = &tag.distance {
                 ui.label(distance);
             }

@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 
-use eframe::egui::{self, Align, Layout, Rect, RichText, Ui, UiBuilder, vec2};
+use eframe::egui::{self, Align, Color32, Layout, Rect, RichText, Stroke, Ui, UiBuilder, vec2};
 
 use crate::app::common::commands::Command;
+use crate::app::common::preset_use::PresetUse;
 use crate::app::common::theme;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text;
-use crate::model::PRESETS;
+use crate::model::{PRESETS, Settings};
 
 /// Points of its row, and from its foot to that of the picture, where letters of orientation stand.
 const HEIGHT: f32 = 30.0;
@@ -16,12 +17,13 @@ const FOOT: f32 = 34.0;
 
 /// Points beside the words, and between them.
 const MARGIN: f32 = 10.0;
-const GAP: f32 = 14.0;
+const GAP: f32 = 4.0;
 
 /// What it was closed for.
 #[derive(Debug, Default)]
 pub(crate) struct CtLooks {
     closed_for: Option<PathBuf>,
+    in_use: PresetUse,
 }
 
 impl CtLooks {
@@ -30,6 +32,7 @@ impl CtLooks {
         &mut self,
         ui: &mut Ui,
         picture: Rect,
+        settings: &Settings,
         volume: &VolumeFacts,
         commands: &mut Vec<Command>,
     ) {
@@ -39,12 +42,15 @@ impl CtLooks {
         if presets.is_empty() || self.closed_for.as_ref() == Some(&volume.source) {
             return;
         }
+        self.in_use.look_at(ui, settings, &volume.ranges);
         let font = egui::TextStyle::Button.resolve(ui.style());
+        let padding = ui.spacing().button_padding.x;
         let width_of = |words: &str| {
             let laid = ui.painter().layout_no_wrap(words.to_owned(), font.clone(), theme::EYE_CURVE);
             laid.size().x + GAP
         };
-        let titles: f32 = presets.iter().map(|preset| width_of(&preset.title())).sum();
+        // Buttons have a margin around their words.
+        let titles: f32 = presets.iter().map(|preset| width_of(preset.title) + 2.0 * padding).sum();
         let width = width_of(text::picture::CT_LOOKS) + titles + width_of(text::picture::CLOSE_CT_LOOKS_SIGN);
         let size = vec2(width - GAP + 2.0 * MARGIN, HEIGHT);
         if picture.width() < size.x + 2.0 * MARGIN || picture.height() < 8.0 * HEIGHT {
@@ -59,8 +65,14 @@ impl CtLooks {
         ui.spacing_mut().item_spacing.x = GAP;
         ui.label(RichText::new(text::picture::CT_LOOKS).color(theme::EYE_CURVE));
         for preset in presets {
-            let title = RichText::new(preset.title()).color(theme::ACCENT);
-            let button = ui.add(egui::Button::new(title).frame(false));
+            // The one in use is filled.
+            let is_used = self.in_use.has(&preset);
+            let (ink, fill) =
+                if is_used { (theme::OUTLINE, theme::ACCENT) } else { (theme::ACCENT, Color32::TRANSPARENT) };
+            let title = RichText::new(preset.title).color(ink);
+            let button = ui.add(egui::Button::new(title).fill(fill).stroke(Stroke::NONE).corner_radius(5.0));
+            button
+                .widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_used, preset.title));
             // What it is for is read from its text: only for who asks.
             let button = button.on_hover_ui(|ui| {
                 ui.label(preset.about());

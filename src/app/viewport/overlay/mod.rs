@@ -3,7 +3,8 @@
 
 pub(in crate::app) mod crop_frame;
 pub(in crate::app) mod ct_looks;
-mod sides;
+mod outlined;
+pub(in crate::app) mod side_letters;
 
 use eframe::egui::{
     Align2, Color32, FontId, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2,
@@ -11,10 +12,10 @@ use eframe::egui::{
 };
 use glam::DVec3;
 
-use self::sides::{Letters, letters};
+use self::outlined::outlined;
 use super::view_projection::ViewProjection;
 use crate::app::common::theme;
-use crate::export::{SIDES, scale_bar as bar_for};
+use crate::export::{SIDES, scale_bar as bar_for, sides};
 use crate::math::SceneSpace;
 use crate::model::{Camera, StandardView};
 
@@ -51,9 +52,7 @@ impl Overlay {
         let painter = ui.painter_at(picture);
         scale_bar(&painter, picture, camera, (scene, has_unknown_scale));
         if let Some(part) = body {
-            for Letters { at, align, text } in letters(part, camera) {
-                outlined(&painter, at, align, &text);
-            }
+            side_letters::write(&painter, part, sides(camera), side_letters::MARGIN);
         }
         cube(ui, &painter, picture, camera, body.is_some())
     }
@@ -107,15 +106,6 @@ fn scale_bar(
     }
     let middle = left + vec2(length / 2.0, -6.0);
     outlined(painter, middle, Align2::CENTER_BOTTOM, &bar.words);
-}
-
-/// Text that can be read on any picture.
-fn outlined(painter: &Painter, at: Pos2, align: Align2, text: &str) {
-    let font = FontId::proportional(12.0);
-    for offset in [vec2(1.0, 0.0), vec2(-1.0, 0.0), vec2(0.0, 1.0), vec2(0.0, -1.0)] {
-        painter.text(at + offset, align, text, font.clone(), theme::OUTLINE);
-    }
-    painter.text(at, align, text, font, theme::EYE_CURVE);
 }
 
 /// The cube at the top right: its sides can be clicked.

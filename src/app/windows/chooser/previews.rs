@@ -9,6 +9,7 @@ use image::RgbImage;
 use image::imageops::{self, FilterType};
 
 use crate::app::windows::slices::image::{Grey, lookup, slice};
+use crate::app::windows::slices::plane::SlicePlane;
 use crate::app::worker::task::Work;
 use crate::data::load::{Choice, LoadControl, LoadOptions, Portion, Region, Stretch};
 use crate::data::{Volume, open};
@@ -146,7 +147,7 @@ fn middle(volume: &Volume) -> Option<ColorImage> {
     let shown = volume.shown_range();
     let table = lookup(volume, Grey { black: shown.low, white: shown.high }, None);
     let dims = volume.dims();
-    let whole = slice(volume, 2, dims[2] / 2, &table);
+    let whole = slice(volume, &SlicePlane::across(2), dims[2] / 2, &table);
     let bytes = whole.pixels.iter().flat_map(|color| [color.r(), color.g(), color.b()]).collect();
     let [width, height] = [dims[0], dims[1]].map(|n| u32::try_from(n).ok());
     let whole = RgbImage::from_raw(width?, height?, bytes)?;

@@ -135,8 +135,7 @@ fn with_presets(settings: &Settings, volume: &Volume) -> Vec<Candidate> {
         .into_iter()
         .filter_map(|preset| {
             let settings = preset.apply(settings, &ranges).ok()?;
-            let [domain, _] = preset.domain_titles();
-            let name = text::contact_sheet::preset(domain, &preset.title());
+            let name = preset.title.to_owned();
             let fits = fits(&preset);
             let tip = if fits { text::contact_sheet::USE_TIP } else { text::transfer::FOR_CT };
             let command = Command::UsePreset(preset);

@@ -3,6 +3,7 @@
 use eframe::egui::ecolor::gamma_u8_from_linear_f32;
 use eframe::egui::{Color32, ColorImage, Vec2};
 
+use super::plane::SlicePlane;
 use crate::data::{ValueRange, Volume};
 use crate::model::TransferFunction;
 
@@ -26,17 +27,27 @@ impl Grey {
         Self { black, white: self.white.clamp(black + span * 1e-3, high + 3.0 * span) }
     }
 
+    /// Value that is a middle grey.
+    pub(crate) fn level(self) -> f64 {
+        f64::midpoint(self.black, self.white)
+    }
+
+    /// Distance in values from black to white.
+    pub(crate) fn width(self) -> f64 {
+        self.white - self.black
+    }
+
+    /// Scale of greys with a middle and a width, in data units.
+    pub(crate) fn from_level_and_width(level: f64, width: f64) -> Self {
+        Self { black: level - width / 2.0, white: level + width / 2.0 }
+    }
+
     /// As radiologists drag: to the right for less contrast, up for a brighter slice. By shares of a slice.
     pub(crate) fn drag(&mut self, by: Vec2, range: ValueRange) {
-        let middle = f64::midpoint(self.black, self.white) + f64::from(by.y) * (range.high - range.low);
-        let width = (self.white - self.black) * f64::from(by.x * 2.0).exp();
-        *self = Self { black: middle - width / 2.0, white: middle + width / 2.0 }.within(range);
+        let level = self.level() + f64::from(by.y) * (range.high - range.low);
+        let width = self.width() * f64::from(by.x * 2.0).exp();
+        *self = Self::from_level_and_width(level, width).within(range);
     }
-}
-
-/// The axes of index space that a cut across an axis shows to the right and upwards.
-pub(crate) fn across(axis: usize) -> [usize; 2] {
-    [[1, 2], [0, 2], [0, 1]][axis]
 }
 
 /// Colours of densities from 0 to 1. With a transfer function, that of settings as they are drawn, in its colours as far
@@ -56,15 +67,16 @@ pub(crate) fn lookup(volume: &Volume, grey: Grey, transfer: Option<&TransferFunc
     (0..=STEPS).map(color).collect()
 }
 
-/// The voxels across an axis, in the colours of a table; black where they are missing.
-pub(crate) fn slice(volume: &Volume, axis: usize, at: usize, table: &[Color32]) -> ColorImage {
+/// The slice of a plane that holds the voxels with an index across it, in the colours of a table; black where they are
+/// missing.
+pub(crate) fn slice(volume: &Volume, plane: &SlicePlane, at: usize, table: &[Color32]) -> ColorImage {
     let dims = volume.dims();
-    let [u, v] = across(axis);
+    let [u, v] = [plane.right.axis, plane.up.axis];
     let mut pixels = Vec::with_capacity(dims[u] * dims[v]);
     for row in (0..dims[v]).rev() {
         for column in 0..dims[u] {
             let mut voxel = [at; 3];
-            (voxel[u], voxel[v]) = (column, row);
+            (voxel[u], voxel[v]) = (plane.right.nth(column, dims[u]), plane.up.nth(row, dims[v]));
             let color = |density: f64| table[((density * STEPS as f64) as usize).min(STEPS)];
             pixels.push(volume.density_at(voxel).map_or(Color32::BLACK, color));
         }
@@ -74,6 +86,7 @@ pub(crate) fn slice(volume: &Volume, axis: usize, at: usize, table: &[Color32]) 
 
 #[cfg(test)]
 mod tests {
+    use super::super::plane::ScreenAxis;
     use super::*;
     use crate::data::Samples;
     use crate::model::ControlPoint;
@@ -98,10 +111,16 @@ mod tests {
         for (axis, size, top_left, bottom_right) in
             [(0, [3, 4], 301.0, 21.0), (1, [2, 4], 310.0, 11.0), (2, [2, 3], 120.0, 101.0)]
         {
-            let image = slice(&volume, axis, 1, &table);
+            let plane = SlicePlane::across(axis);
+            let image = slice(&volume, &plane, 1, &table);
             assert_eq!(image.size, size, "across axis {axis}");
             assert_eq!(image.pixels[0], grey(top_left), "across axis {axis}");
             assert_eq!(*image.pixels.last().unwrap(), grey(bottom_right), "across axis {axis}");
+            // Turned by half a turn.
+            let [right, up] = [plane.right, plane.up].map(|run| ScreenAxis { is_reversed: true, ..run });
+            let turned = slice(&volume, &SlicePlane { right, up, ..plane }, 1, &table);
+            assert_eq!(turned.size, size);
+            assert!(turned.pixels.iter().eq(image.pixels.iter().rev()), "across axis {axis}");
         }
     }
 
@@ -116,6 +135,11 @@ mod tests {
             grey.drag(vec2(-0.9, 0.9), ValueRange::new(0.0, 100.0));
         }
         assert!(grey.white > grey.black && grey.black <= 200.0);
+        let window = Grey::from_level_and_width(40.0, 400.0);
+        assert_eq!(
+            (window.black, window.white, window.level(), window.width()),
+            (-160.0, 240.0, 40.0, 400.0)
+        );
         let turned = Grey { black: 9.0, white: 1.0 }.within(ValueRange::new(0.0, 10.0));
         assert!(turned.white > turned.black);
     }

@@ -1,26 +1,26 @@
 //! The window "Slices": three cuts through the data along its axes, through a cursor that they share with the
 //! picture.
 
+mod cut;
 pub(in crate::app::windows) mod image;
+pub(crate) mod plane;
 
 use std::sync::Arc;
 
-use eframe::egui::{
-    self, Color32, CursorIcon, Painter, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke,
-    TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
-};
+use eframe::egui::{self, DragValue, Painter, Stroke, Ui};
 use glam::DVec3;
 
-use self::image::{Grey, across, lookup, slice};
+use self::cut::{Cut, Shape};
+use self::image::Grey;
+use self::plane::{Convention, SlicePlane};
 use crate::app::common::dock::Tool;
 use crate::app::common::theme;
-use crate::app::common::volume_facts::VolumeFacts;
+use crate::app::common::volume_facts::{VolumeFacts, decimals};
 use crate::app::text;
-use crate::app::viewport::orbit::wheel_notches;
 use crate::app::viewport::view_projection::ViewProjection;
-use crate::data::{Shown, ValueRange, Volume};
+use crate::data::{ValueRange, Volume};
 use crate::math::SceneSpace;
-use crate::model::TransferFunction;
+use crate::model::{LabelTable, TransferFunction};
 
 /// Longest edge of a slice on screen, in points, before somebody makes the window larger or smaller.
 const EDGE: f32 = 208.0;
@@ -31,12 +31,16 @@ const MOST_EDGE: f32 = 900.0;
 /// Shares of all voxels that are as black, or as white, as can be, before the user says otherwise.
 const CLIPPED: [f64; 2] = [0.005, 0.995];
 
-/// One of the three cuts.
-#[derive(Default)]
-struct Cut {
-    texture: Option<TextureHandle>,
-    /// What the texture shows: volume, slice, grey levels, colours.
-    drawn: Option<(u64, usize, Grey, Option<TransferFunction>)>,
+/// Narrowest window, as a share of the values that there are: a slice of two tones.
+const LEAST_WINDOW: f64 = 1e-3;
+
+/// Look that slices share with the picture.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SliceLook<'a> {
+    /// The transfer function of the settings as they are drawn.
+    pub transfer: &'a TransferFunction,
+    /// What labels are called.
+    pub labels: &'a LabelTable,
 }
 
 /// State of the window.
@@ -44,6 +48,8 @@ struct Cut {
 pub(crate) struct Slices {
     /// Whether it is there.
     pub open: bool,
+    /// Side on which a body's right is shown.
+    pub convention: Convention,
     /// The voxel through which all cuts go.
     cursor: [usize; 3],
     /// Of which volume that is, and the grey levels.
@@ -52,6 +58,7 @@ pub(crate) struct Slices {
     colored: bool,
     /// What the wheel has turned beyond whole slices: it comes in many small parts.
     turned: f64,
+    /// From above, from the front, from the side.
     cuts: [Cut; 3],
     /// Longest edge of a slice on screen, in points.
     edge: f32,
@@ -80,15 +87,14 @@ impl Slices {
         ctx: &egui::Context,
         volume: Option<&Arc<Volume>>,
         facts: Option<&VolumeFacts>,
-        transfer: &TransferFunction,
+        look: SliceLook<'_>,
     ) {
         let (Some(volume), Some(facts), true) = (volume, facts, self.open) else { return };
         let mut grey = match self.of {
             Some((of, grey)) if of == volume.content_id() => grey,
             _ => {
                 self.cursor = volume.dims().map(|n| n / 2);
-                let [black, white] = CLIPPED.map(|share| volume.value_of(facts.histogram.percentile(share)));
-                Grey { black, white }
+                first_grey(volume, facts)
             }
         };
         let mut open = true;
@@ -97,18 +103,33 @@ impl Slices {
         tool.show(ctx, &mut open, |ui| {
             // Two beside each other.
             self.edge = ((ui.available_width() - 8.0) / 2.0).clamp(LEAST_EDGE, MOST_EDGE);
-            // From above, from the front, from the right; and what is at the cursor.
+            let [above, front, side] = SlicePlane::all(volume, self.convention);
             ui.horizontal_top(|ui| {
-                self.cut(ui, 2, volume, &mut grey, transfer);
-                self.cut(ui, 1, volume, &mut grey, transfer);
+                self.cut(ui, 0, above, volume, &mut grey, look);
+                self.cut(ui, 1, front, volume, &mut grey, look);
             });
             ui.horizontal_top(|ui| {
-                self.cut(ui, 0, volume, &mut grey, transfer);
-                ui.vertical(|ui| self.facts(ui, volume, facts, &mut grey, transfer));
+                self.cut(ui, 2, side, volume, &mut grey, look);
+                ui.vertical(|ui| self.facts(ui, volume, facts, &mut grey, look));
             });
         });
         self.open = open;
         self.of = Some((volume.content_id(), grey.within(facts.range)));
+    }
+
+    /// One of the cuts, and what the mouse does on it.
+    fn cut(
+        &mut self,
+        ui: &mut Ui,
+        at: usize,
+        plane: SlicePlane,
+        volume: &Arc<Volume>,
+        grey: &mut Grey,
+        look: SliceLook<'_>,
+    ) {
+        let colors = self.colored.then_some(look.transfer);
+        let shape = Shape { plane, edge: self.edge };
+        self.cuts[at].show(ui, shape, volume, (&mut self.cursor, &mut self.turned), grey, colors);
     }
 
     /// What is known of the cursor, and how grey the slices are.
@@ -118,111 +139,50 @@ impl Slices {
         volume: &Volume,
         facts: &VolumeFacts,
         grey: &mut Grey,
-        transfer: &TransferFunction,
+        SliceLook { transfer, labels }: SliceLook<'_>,
     ) {
         let [x, y, z] = self.cursor;
         let value = volume.value(x, y, z);
         let unit = facts.length_unit();
         let world = volume.world_from_index().transform_point3(DVec3::from(self.cursor.map(|at| at as f64)));
         egui::Grid::new("cursor").num_columns(2).spacing([10.0, 3.0]).show(ui, |ui| {
-            let mut line = |what: &str, found: String| {
-                ui.weak(what);
+            let line = |ui: &mut Ui, what: &str, found: &str| {
+                let name = ui.weak(what);
                 ui.label(found);
                 ui.end_row();
+                name
             };
-            line(text::slices::VOXEL, format!("{x}, {y}, {z}"));
+            line(ui, text::slices::VOXEL, &format!("{x}, {y}, {z}"));
             let [x, y, z] = (world / unit.mm).to_array();
-            line(unit.symbol(), format!("{x:.1}, {y:.1}, {z:.1}"));
-            let digits = if facts.levels.is_some() { format!("{value}") } else { format!("{value:.5}") };
-            line(text::slices::VALUE, digits);
+            let name = text::slices::unit(unit.symbol(), facts.is_anatomical);
+            let name = line(ui, &name, &format!("{x:.1}, {y:.1}, {z:.1}"));
+            if facts.is_anatomical {
+                name.on_hover_text(text::slices::RAS_TIP);
+            }
+            if let Some(label) = facts.label_of(value) {
+                line(ui, text::slices::LABEL, &text::slices::label(label.number, &label.name(labels)));
+            } else {
+                let digits = if facts.levels.is_some() { format!("{value}") } else { format!("{value:.5}") };
+                line(ui, text::slices::VALUE, &digits);
+            }
             let place = volume.table_range().at(volume.density_of(value));
-            line(text::slices::OPACITY, format!("{:.2}", transfer.opacity_at(place)));
+            line(ui, text::slices::OPACITY, &format!("{:.2}", transfer.opacity_at(place)));
+            window_and_level(ui, grey, facts);
         });
-        let speed = facts.range.span() / 500.0;
-        for (name, level) in [(text::slices::BLACK, &mut grey.black), (text::slices::WHITE, &mut grey.white)]
-        {
-            ui.horizontal(|ui| {
-                let label = ui.label(name);
-                let field = egui::DragValue::new(level).speed(speed).max_decimals(3);
-                ui.add(field).labelled_by(label.id).on_hover_text(text::slices::LEVEL_TIP);
+        if facts.is_anatomical {
+            ui.horizontal_wrapped(|ui| {
+                for (convention, words) in [
+                    (Convention::Radiological, text::slices::RADIOLOGICAL),
+                    (Convention::Neurological, text::slices::NEUROLOGICAL),
+                ] {
+                    let choice = ui.selectable_value(&mut self.convention, convention, words.name);
+                    choice.on_hover_text(words.tip);
+                }
             });
         }
         let colored = text::slices::COLORED;
         ui.checkbox(&mut self.colored, colored.name).on_hover_text(colored.tip);
         ui.weak(text::slices::HINT);
-    }
-
-    /// The cut across an axis, and what the mouse does on it.
-    fn cut(
-        &mut self,
-        ui: &mut Ui,
-        axis: usize,
-        volume: &Arc<Volume>,
-        grey: &mut Grey,
-        transfer: &TransferFunction,
-    ) {
-        let dims = volume.dims();
-        let [u, v] = across(axis);
-        let what = (volume.content_id(), self.cursor[axis], *grey, self.colored.then(|| transfer.clone()));
-        let cut = &mut self.cuts[axis];
-        if cut.drawn.as_ref() != Some(&what) {
-            // Whatever the picture shows: beyond these all values look the same.
-            let ValueRange { low, high } = volume.shown_range();
-            let greys = Shown::Range(ValueRange::new(low.min(grey.black), high.max(grey.white)));
-            let is_by_label = self.colored && volume.shown_labels().is_some();
-            let shown = if is_by_label { Shown::Labels } else { greys };
-            let volume = volume.showing(shown);
-            let table = lookup(&volume, *grey, what.3.as_ref());
-            let image = slice(&volume, axis, self.cursor[axis], &table);
-            match &mut cut.texture {
-                Some(texture) => texture.set(image, TextureOptions::LINEAR),
-                empty => *empty = Some(ui.ctx().load_texture("slice", image, TextureOptions::LINEAR)),
-            }
-            cut.drawn = Some(what);
-        }
-        let Some(texture) = &cut.texture else { return };
-        let spacing = volume.spacing_mm();
-        let size = vec2((dims[u] as f64 * spacing[u]) as f32, (dims[v] as f64 * spacing[v]) as f32);
-        let edge = self.edge;
-        let size = (size * (edge / size.max_elem())).max(Vec2::splat(2.0));
-        // Beside each other they begin at the same places.
-        let (frame, response) =
-            ui.allocate_exact_size(vec2(edge, size.y.max(0.4 * edge)), Sense::click_and_drag());
-        let area = Rect::from_center_size(frame.center(), size);
-        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, text::slices::across(axis)));
-        let painter = ui.painter_at(frame);
-        // Not as black as data may be, so that it is seen where these end.
-        painter.rect_filled(frame, 0.0, theme::EMPTY_CANVAS);
-        let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-        painter.image(texture.id(), area, whole, Color32::WHITE);
-        self.move_cursor(ui, &response, area, axis, dims);
-        if response.dragged_by(PointerButton::Secondary) {
-            grey.drag(response.drag_delta() / edge, volume.shown_range());
-        }
-        crosshair(&painter, area, axis, self.cursor, dims);
-        let name = text::slices::plane(axis, self.cursor[axis], volume.is_anatomical());
-        let font = egui::TextStyle::Small.resolve(ui.style());
-        painter.text(frame.left_top() + vec2(5.0, 3.0), egui::Align2::LEFT_TOP, name, font, theme::EYE_CURVE);
-        if response.hovered() {
-            ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
-        }
-    }
-
-    fn move_cursor(&mut self, ui: &Ui, response: &Response, area: Rect, axis: usize, dims: [usize; 3]) {
-        let [u, v] = across(axis);
-        let moves = response.clicked() || response.dragged_by(PointerButton::Primary);
-        if let Some(at) = response.interact_pointer_pos().filter(|_| moves) {
-            let share = (at - area.min) / area.size();
-            let voxel = |share: f32, n: usize| ((share * n as f32).max(0.0) as usize).min(n - 1);
-            self.cursor[u] = voxel(share.x, dims[u]);
-            self.cursor[v] = voxel(1.0 - share.y, dims[v]);
-        }
-        if response.hovered() {
-            self.turned += wheel_notches(ui);
-            let whole = self.turned.trunc();
-            self.turned -= whole;
-            self.cursor[axis] = self.cursor[axis].saturating_add_signed(whole as isize).min(dims[axis] - 1);
-        }
     }
 
     /// The cursor in the picture: a line along each axis of the grid.
@@ -244,15 +204,40 @@ impl Slices {
     }
 }
 
-/// Where the other two cuts go through this one.
-fn crosshair(painter: &Painter, area: Rect, axis: usize, cursor: [usize; 3], dims: [usize; 3]) {
-    let [u, v] = across(axis);
-    let share = |axis: usize| (cursor[axis] as f32 + 0.5) / dims[axis] as f32;
-    let at: Pos2 = area.min + vec2(share(u), 1.0 - share(v)) * area.size();
-    let stroke = |axis: usize| Stroke::new(1.0, theme::AXES[axis].gamma_multiply(0.8));
-    // A line lies along the axis that it stands for.
-    painter.hline(area.x_range(), at.y, stroke(u));
-    painter.vline(at.x, area.y_range(), stroke(v));
+/// Grey levels before anybody has changed them: those that the file suggests, or of the values that matter.
+fn first_grey(volume: &Volume, facts: &VolumeFacts) -> Grey {
+    let found = volume.hints().window;
+    let [black, white] =
+        found.unwrap_or_else(|| CLIPPED.map(|share| volume.value_of(facts.histogram.percentile(share))));
+    // Of whole numbers, whole ones.
+    if facts.levels.is_some() && decimals(facts.range) == 0 {
+        Grey { black: black.floor(), white: white.ceil() }
+    } else {
+        Grey { black, white }
+    }
+}
+
+/// Fields for the window and its level, a row each, in as many digits as tell values apart.
+fn window_and_level(ui: &mut Ui, grey: &mut Grey, facts: &VolumeFacts) {
+    let ValueRange { low, high } = facts.range;
+    let span = (high - low).max(f64::MIN_POSITIVE);
+    let (mut level, mut width) = (grey.level(), grey.width());
+    for (words, value, range) in [
+        (text::slices::LEVEL, &mut level, low - span..=high + 3.0 * span),
+        (text::slices::WIDTH, &mut width, LEAST_WINDOW * span..=4.0 * span),
+    ] {
+        let label = ui.weak(words.name);
+        let field = DragValue::new(value)
+            .speed(span / 500.0)
+            .range(range)
+            .clamp_existing_to_range(false)
+            .max_decimals(decimals(facts.range));
+        ui.add(field).labelled_by(label.id).on_hover_text(words.tip);
+        ui.end_row();
+    }
+    if (level, width) != (grey.level(), grey.width()) {
+        *grey = Grey::from_level_and_width(level, width);
+    }
 }
 
 #[cfg(test)]
@@ -271,10 +256,11 @@ mod tests {
         let facts = VolumeFacts::of("ramp".into(), Reading::default(), &dataset);
         let mut slices = Slices { open: true, ..Slices::default() };
         let ctx = egui::Context::default();
-        let transfer = TransferFunction::default();
+        let (transfer, labels) = (TransferFunction::default(), LabelTable::default());
+        let look = SliceLook { transfer: &transfer, labels: &labels };
         for _ in 0..2 {
             let mut output = ctx.run_ui(egui::RawInput::default(), |ui| {
-                slices.ui(ui.ctx(), Some(dataset.volume()), Some(&facts), &transfer);
+                slices.ui(ui.ctx(), Some(dataset.volume()), Some(&facts), look);
             });
             output.textures_delta.clear();
         }

@@ -6,6 +6,7 @@ mod visibility;
 
 use std::ops::Range;
 
+use super::domain::Domain;
 use super::isosurfaces::Isosurfaces;
 use super::threshold::otsu;
 use super::{above, frame, transfer};
@@ -50,7 +51,8 @@ pub(super) fn revealed(settings: Settings, volume: &Volume, histogram: &Histogra
     if share(&settings.transfer) >= HIDDEN {
         return settings;
     }
-    let veiled = VEILS.map(|veil| transfer::veiled(&settings.transfer, start, veil));
+    let channels = Domain::of_channels(volume);
+    let veiled = VEILS.map(|veil| transfer::veiled(&settings.transfer, start, veil, channels));
     match veiled.into_iter().find(|function| share(function) >= REVEALED) {
         Some(transfer) => Settings { transfer, ..settings },
         None => settings,

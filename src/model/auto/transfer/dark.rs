@@ -19,7 +19,7 @@ pub(super) fn find(volume: &Volume, histogram: &Histogram) -> Found {
     let margin = if around < split { around } else { 0.0 };
     // Never so dark that nothing is left.
     let start = above_margin(margin, split).min(1.0 - LEAST_ABOVE);
-    let domain = Domain::Unknown;
+    let domain = Domain::of_channels(volume).unwrap_or(Domain::Unknown);
     let slope = Isosurfaces::of(volume).slope(1.0 - start).unwrap_or_default();
     let stops = rising(&darkness, Edge { start, slope }).map(|(darkness, place, opacity)| Stop {
         value: volume.value_of((1.0 - darkness).max(0.0)),

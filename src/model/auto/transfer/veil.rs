@@ -1,16 +1,24 @@
 //! A veil around what lies within.
 
+use super::super::domain::Domain;
+use super::super::palette::Palette;
 use crate::model::{ControlPoint, Interpolation, TransferFunction};
 
-/// A function that shows what is above a value alone, in ivory.
-pub(in crate::model::auto) fn inner(function: &TransferFunction, start: f64) -> TransferFunction {
+/// A function that shows what is above a value alone: in the colours of the field that all channels of the file share, or
+/// else in ivory.
+pub(in crate::model::auto) fn inner(
+    function: &TransferFunction,
+    start: f64,
+    channels: Option<Domain>,
+) -> TransferFunction {
     let end = function.points.last().map_or(start, |point| point.value).max(start);
     let at = |share: f64| start + share * (end - start);
+    let color = |place: f64, ivory: [f32; 3]| channels.map_or(ivory, |domain| Palette::of(domain).at(place));
     let points = vec![
-        ControlPoint::new(at(0.0), [0.72, 0.60, 0.48], 0.0),
-        ControlPoint::new(at(0.15), [0.87, 0.78, 0.64], 0.6),
-        ControlPoint::new(at(0.5), [0.96, 0.91, 0.82], 0.9),
-        ControlPoint::new(at(1.0), [1.0, 0.98, 0.95], 0.96),
+        ControlPoint::new(at(0.0), color(0.0, [0.72, 0.60, 0.48]), 0.0),
+        ControlPoint::new(at(0.15), color(0.4, [0.87, 0.78, 0.64]), 0.6),
+        ControlPoint::new(at(0.5), color(0.8, [0.96, 0.91, 0.82]), 0.9),
+        ControlPoint::new(at(1.0), color(1.0, [1.0, 0.98, 0.95]), 0.96),
     ];
     TransferFunction { points, interpolation: Interpolation::Opacity, ..function.clone() }
 }
@@ -21,6 +29,7 @@ pub(in crate::model::auto) fn veiled(
     function: &TransferFunction,
     start: f64,
     share: f64,
+    channels: Option<Domain>,
 ) -> TransferFunction {
     let begins = function.points.windows(2).find(|pair| pair[0].opacity <= 0.0 && pair[1].opacity > 0.0);
     let skin = begins.filter(|pair| pair[1].value < start).map(|pair| {
@@ -30,7 +39,7 @@ pub(in crate::model::auto) fn veiled(
         let at = |value: f64, opacity: f64| ControlPoint { value, opacity, ..function.point_at(value) };
         [outside, at(surface.value, share * surface.opacity), at(ends, 0.0)]
     });
-    let points = skin.into_iter().flatten().chain(inner(function, start).points).collect();
+    let points = skin.into_iter().flatten().chain(inner(function, start, channels).points).collect();
     TransferFunction { points, ..function.clone() }
 }
 

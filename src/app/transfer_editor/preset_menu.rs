@@ -1,0 +1,125 @@
+//! Menu of the presets: a small picture of each, by domain. Those for another kind of data are dim, and those in use have
+//! a frame.
+
+use eframe::egui::{
+    self, Align2, Color32, Rect, Response, Role, ScrollArea, Sense, Stroke, StrokeKind, TextStyle, Ui, Vec2,
+    WidgetInfo, pos2, vec2,
+};
+
+use super::super::text;
+use super::preset_pictures::PresetPictures;
+use crate::app::common::commands::Command;
+use crate::app::common::preset_use::PresetUse;
+use crate::app::common::theme;
+use crate::app::common::volume_facts::VolumeFacts;
+use crate::model::{PRESETS, Preset, Settings};
+
+/// Points of a picture: half of its pixels.
+const PICTURE: Vec2 = vec2(88.0, 58.0);
+/// Points around a picture, and of the title below it.
+const MARGIN: f32 = 4.0;
+const TITLE: f32 = 17.0;
+/// Pictures side by side: the largest domain, of seven, takes two rows.
+const COLUMNS: f32 = 4.0;
+/// Points above the menu's button that the list leaves: the command at its top, and the bar of the window.
+const ABOVE: f32 = 90.0;
+/// Points of height of the list at least, where two rows are seen.
+const LEAST_HEIGHT: f32 = 200.0;
+/// Opacity of pictures of presets for another kind of data.
+const DIM: u8 = 90;
+
+/// What the menu shows, kept between frames.
+#[derive(Debug, Default)]
+pub(super) struct PresetMenu {
+    pictures: PresetPictures,
+    in_use: PresetUse,
+}
+
+impl PresetMenu {
+    /// Shows the button of the menu, and the menu while it is open.
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        settings: &Settings,
+        volume: &VolumeFacts,
+        commands: &mut Vec<Command>,
+    ) {
+        // It opens upwards: below lies the plot.
+        let height = (ui.cursor().top() - ABOVE).max(LEAST_HEIGHT);
+        ui.menu_button(text::transfer::PRESETS, |ui| {
+            let all = ui.button(&*Command::TryPresets.label()).on_hover_text(text::transfer::TRY_PRESETS_TIP);
+            if all.clicked() {
+                commands.push(Command::TryPresets);
+            }
+            ui.separator();
+            self.in_use.look_at(ui, settings, &volume.ranges);
+            let list = ScrollArea::vertical().id_salt("presets").max_height(height);
+            list.min_scrolled_height(height).show(ui, |ui| {
+                ui.spacing_mut().item_spacing = Vec2::splat(2.0);
+                ui.set_width(COLUMNS * (PICTURE.x + 2.0 * MARGIN + 2.0));
+                // The one of the benchmarks is for the command line.
+                let listed: Vec<Preset> =
+                    PRESETS.into_iter().filter(|preset| preset.domain() != "bench").collect();
+                for domain in listed.chunk_by(|a, b| a.domain() == b.domain()) {
+                    ui.add_space(6.0);
+                    ui.weak(domain.first().map_or("", Preset::domain_title));
+                    ui.horizontal_wrapped(|ui| {
+                        for preset in domain {
+                            if self.card(ui, preset, preset.suits(&volume.kind)).clicked() {
+                                commands.push(Command::UsePreset(*preset));
+                            }
+                        }
+                    });
+                }
+            });
+        });
+    }
+
+    /// A preset: its picture, and its title below.
+    fn card(&mut self, ui: &mut Ui, preset: &Preset, suits: bool) -> Response {
+        let size = PICTURE + vec2(2.0 * MARGIN, 2.0 * MARGIN + TITLE);
+        let (area, response) = ui.allocate_exact_size(size, Sense::click());
+        let is_used = self.in_use.has(preset);
+        response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_used, preset.title));
+        let visuals = ui.style().interact_selectable(&response, is_used);
+        let painter = ui.painter();
+        if response.hovered() || response.has_focus() {
+            painter.rect_filled(area, 4.0, visuals.weak_bg_fill);
+        }
+        let picture = Rect::from_min_size(area.min + Vec2::splat(MARGIN), PICTURE);
+        match self.pictures.get(ui.ctx(), preset) {
+            Some(texture) => {
+                let tint = if suits { Color32::WHITE } else { Color32::from_white_alpha(DIM) };
+                let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+                painter.image(texture.id(), picture, whole, tint);
+            }
+            None => {
+                painter.rect_filled(picture, 0.0, theme::EMPTY_CANVAS);
+            }
+        }
+        let ink = if is_used {
+            let frame = Stroke::new(2.0, theme::ACCENT);
+            painter.rect_stroke(picture, 2.0, frame, StrokeKind::Outside);
+            theme::accent(ui.visuals())
+        } else if suits {
+            ui.visuals().text_color()
+        } else {
+            ui.visuals().weak_text_color()
+        };
+        let font = TextStyle::Small.resolve(ui.style());
+        let mut title = egui::text::LayoutJob::simple_singleline(preset.title.to_owned(), font, ink);
+        title.wrap = egui::text::TextWrapping::truncate_at_width(PICTURE.x + MARGIN);
+        let title = painter.layout_job(title);
+        let middle = pos2(picture.center().x, picture.bottom() + MARGIN + 0.5 * (TITLE - MARGIN));
+        let place = Align2::CENTER_CENTER.anchor_size(middle, title.size());
+        painter.galley(place.min, title, ink);
+        let mut about = preset.about();
+        if is_used {
+            about = text::transfer::in_use(&about);
+        }
+        if !suits {
+            about = text::transfer::not_for_these(&about);
+        }
+        response.on_hover_text(about)
+    }
+}

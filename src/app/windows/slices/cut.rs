@@ -1,0 +1,158 @@
+//! One of the three cuts of the window "Slices": its picture, the letters at its edges, and what the mouse does on it.
+
+use std::sync::Arc;
+
+use eframe::egui::{
+    self, Color32, CursorIcon, Painter, PointerButton, Rect, Response, Role, Sense, Stroke, TextureHandle,
+    TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
+};
+
+use super::image::{Grey, lookup, slice};
+use super::plane::{BodyPlane, SlicePlane};
+use crate::app::common::theme;
+use crate::app::text;
+use crate::app::viewport::orbit::wheel_notches;
+use crate::app::viewport::overlay::side_letters;
+use crate::data::{Shown, ValueRange, Volume};
+use crate::model::TransferFunction;
+
+/// Points from the edges of a slice to its letters.
+const LETTER_MARGIN: f32 = 3.0;
+
+/// What a texture shows: volume, plane, slice, grey levels, colours.
+type Drawn = (u64, SlicePlane, usize, Grey, Option<TransferFunction>);
+
+/// Plane of a cut, and its size.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shape {
+    pub plane: SlicePlane,
+    /// Longest edge on screen, in points.
+    pub edge: f32,
+}
+
+/// A cut, with the texture that was made last.
+#[derive(Default)]
+pub(super) struct Cut {
+    texture: Option<TextureHandle>,
+    drawn: Option<Drawn>,
+}
+
+impl Cut {
+    /// Shows the cut through the cursor. `turned`: what the wheel has turned beyond whole slices.
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        Shape { plane, edge }: Shape,
+        volume: &Arc<Volume>,
+        (cursor, turned): (&mut [usize; 3], &mut f64),
+        grey: &mut Grey,
+        colors: Option<&TransferFunction>,
+    ) {
+        self.draw(ui, plane, volume, cursor[plane.across], *grey, colors);
+        let Some(texture) = &self.texture else { return };
+        let (dims, spacing) = (volume.dims(), volume.spacing_mm());
+        let [u, v] = [plane.right.axis, plane.up.axis];
+        let size = vec2((dims[u] as f64 * spacing[u]) as f32, (dims[v] as f64 * spacing[v]) as f32);
+        let size = (size * (edge / size.max_elem())).max(Vec2::splat(2.0));
+        ui.vertical(|ui| {
+            ui.set_max_width(edge);
+            ui.spacing_mut().item_spacing.y = 2.0;
+            let name = text::slices::plane(name(plane), plane.across, cursor[plane.across]);
+            ui.add(egui::Label::new(egui::RichText::new(name).small().weak()).truncate());
+            // Beside each other they begin at the same places.
+            let (frame, response) =
+                ui.allocate_exact_size(vec2(edge, size.y.max(0.4 * edge)), Sense::click_and_drag());
+            let area = Rect::from_center_size(frame.center(), size);
+            let sides = volume.is_anatomical().then(|| plane.sides(&volume.scene()));
+            response.widget_info(|| {
+                let across = plane.across;
+                let name = sides.as_ref().map(|sides| text::slices::across_body(across, sides));
+                WidgetInfo::labeled(Role::Canvas, true, name.unwrap_or_else(|| text::slices::across(across)))
+            });
+            let painter = ui.painter_at(frame);
+            // Not as black as data may be, so that it is seen where these end.
+            painter.rect_filled(frame, 0.0, theme::EMPTY_CANVAS);
+            let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+            painter.image(texture.id(), area, whole, Color32::WHITE);
+            move_cursor(ui, &response, area, plane, dims, (cursor, turned));
+            if response.dragged_by(PointerButton::Secondary) {
+                grey.drag(response.drag_delta() / edge, volume.shown_range());
+            }
+            crosshair(&painter, area, plane, *cursor, dims);
+            if let Some(sides) = sides {
+                side_letters::write(&painter, frame, sides, LETTER_MARGIN);
+            }
+            if response.hovered() {
+                ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
+            }
+        });
+    }
+
+    /// Makes the texture anew, if what it is to show has changed.
+    fn draw(
+        &mut self,
+        ui: &Ui,
+        plane: SlicePlane,
+        volume: &Arc<Volume>,
+        at: usize,
+        grey: Grey,
+        colors: Option<&TransferFunction>,
+    ) {
+        let what = (volume.content_id(), plane, at, grey, colors.cloned());
+        if self.drawn.as_ref() == Some(&what) {
+            return;
+        }
+        // Whatever the picture shows: beyond these all values look the same.
+        let ValueRange { low, high } = volume.shown_range();
+        let greys = Shown::Range(ValueRange::new(low.min(grey.black), high.max(grey.white)));
+        let is_by_label = colors.is_some() && volume.shown_labels().is_some();
+        let shown = if is_by_label { Shown::Labels } else { greys };
+        let volume = volume.showing(shown);
+        let image = slice(&volume, &plane, at, &lookup(&volume, grey, colors));
+        match &mut self.texture {
+            Some(texture) => texture.set(image, TextureOptions::LINEAR),
+            empty => *empty = Some(ui.ctx().load_texture("slice", image, TextureOptions::LINEAR)),
+        }
+        self.drawn = Some(what);
+    }
+}
+
+/// What a plane is called.
+fn name(plane: SlicePlane) -> &'static str {
+    match plane.of_body {
+        Some(BodyPlane::Sagittal) => text::slices::SAGITTAL,
+        Some(BodyPlane::Coronal) => text::slices::CORONAL,
+        Some(BodyPlane::Axial) => text::slices::AXIAL,
+        None => text::slices::span(plane.across),
+    }
+}
+
+fn move_cursor(
+    ui: &Ui,
+    response: &Response,
+    area: Rect,
+    plane: SlicePlane,
+    dims: [usize; 3],
+    (cursor, turned): (&mut [usize; 3], &mut f64),
+) {
+    let moves = response.clicked() || response.dragged_by(PointerButton::Primary);
+    if let Some(at) = response.interact_pointer_pos().filter(|_| moves) {
+        plane.move_to(at, area, dims, cursor);
+    }
+    if response.hovered() {
+        *turned += wheel_notches(ui);
+        let whole = turned.trunc();
+        *turned -= whole;
+        let at = &mut cursor[plane.across];
+        *at = at.saturating_add_signed(whole as isize).min(dims[plane.across] - 1);
+    }
+}
+
+/// Where the other two cuts go through this one.
+fn crosshair(painter: &Painter, area: Rect, plane: SlicePlane, cursor: [usize; 3], dims: [usize; 3]) {
+    let at = plane.place(cursor, dims, area);
+    let stroke = |axis: usize| Stroke::new(1.0, theme::AXES[axis].gamma_multiply(0.8));
+    // A line lies along the axis that it stands for.
+    painter.hline(area.x_range(), at.y, stroke(plane.right.axis));
+    painter.vline(at.x, area.y_range(), stroke(plane.up.axis));
+}

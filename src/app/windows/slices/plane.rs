@@ -1,0 +1,223 @@
+//! How a slice lies on the screen: which axes of the grid run to the right and upwards, and which sides of a body are at
+//! its edges.
+//!
+//! Slices of a body lie as people look at them: the front at the top of axial ones, the head at the top of the others,
+//! and a body's right on the side that the convention names. Of other data x runs to the right and z, or else y, upwards.
+
+use eframe::egui::{Pos2, Rect, Vec2, pos2};
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use crate::data::{Headings, Volume};
+use crate::export::sides_along;
+use crate::math::SceneSpace;
+
+/// Side of the screen on which axial and coronal slices show a body's right.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Convention {
+    /// On the left, as if the body faced the viewer.
+    #[default]
+    Radiological,
+    /// On the right, as if the viewer stood behind the body.
+    Neurological,
+}
+
+/// Plane of a body, named by the axis of the body across which it lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum BodyPlane {
+    /// Across the axis from left to right.
+    Sagittal,
+    /// Across the axis from back to front.
+    Coronal,
+    /// Across the axis from feet to head.
+    Axial,
+}
+
+/// Axis of the grid in a direction of the screen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct ScreenAxis {
+    /// Axis of index space.
+    pub axis: usize,
+    /// Indices fall in that direction.
+    pub is_reversed: bool,
+}
+
+/// Way in which the slices across one axis of the grid lie on the screen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct SlicePlane {
+    /// Axis of index space across which they lie.
+    pub across: usize,
+    /// Axis to the right.
+    pub right: ScreenAxis,
+    /// Axis upwards.
+    pub up: ScreenAxis,
+    /// Plane of the body that is nearest, where there is a body.
+    pub of_body: Option<BodyPlane>,
+}
+
+/// Axes of a body, of right-anterior-superior space.
+const RIGHT: usize = 0;
+const ANTERIOR: usize = 1;
+const SUPERIOR: usize = 2;
+
+impl ScreenAxis {
+    /// Share of the way along this axis, from the left or from the bottom, at which the middle of a voxel lies.
+    fn share(self, index: usize, count: usize) -> f32 {
+        let share = (index as f32 + 0.5) / count as f32;
+        if self.is_reversed { 1.0 - share } else { share }
+    }
+
+    /// Voxel at a share of the way along this axis.
+    fn index(self, share: f32, count: usize) -> usize {
+        let share = if self.is_reversed { 1.0 - share } else { share };
+        ((share * count as f32).max(0.0) as usize).min(count - 1)
+    }
+
+    /// Voxel that is so many voxels from the left or from the bottom.
+    pub(super) fn nth(self, nth: usize, count: usize) -> usize {
+        if self.is_reversed { count - 1 - nth } else { nth }
+    }
+
+    /// Direction of this axis in scene space, of length 1.
+    fn in_scene(self, scene: &SceneSpace) -> DVec3 {
+        let along = scene.scene_from_index.matrix3.col(self.axis).normalize_or_zero();
+        if self.is_reversed { -along } else { along }
+    }
+}
+
+impl SlicePlane {
+    /// Slices across an axis of a grid of no body.
+    pub(crate) fn across(axis: usize) -> Self {
+        let [right, up] = [[1, 2], [0, 2], [0, 1]][axis].map(|axis| ScreenAxis { axis, is_reversed: false });
+        Self { across: axis, right, up, of_body: None }
+    }
+
+    /// The three cuts of a volume: from above, from the front and from the side.
+    pub(crate) fn all(volume: &Volume, convention: Convention) -> [Self; 3] {
+        if !volume.is_anatomical() {
+            return [2, 1, 0].map(Self::across);
+        }
+        let axes = volume.world_from_index().matrix3;
+        let headings = Headings::nearest([axes.x_axis, axes.y_axis, axes.z_axis]).directions();
+        // The axis of the grid that runs along an axis of the body, towards its end or towards its start.
+        let run = |of_body: usize, to_end: bool| {
+            let axis = (0..3).find(|&axis| headings[axis][of_body] != 0.0).unwrap_or(of_body);
+            ScreenAxis { axis, is_reversed: (headings[axis][of_body] > 0.0) != to_end }
+        };
+        let to_right = convention == Convention::Neurological;
+        let plane = |across, right, up, of_body| Self {
+            across: run(across, true).axis,
+            right,
+            up: run(up, true),
+            of_body: Some(of_body),
+        };
+        [
+            plane(SUPERIOR, run(RIGHT, to_right), ANTERIOR, BodyPlane::Axial),
+            plane(ANTERIOR, run(RIGHT, to_right), SUPERIOR, BodyPlane::Coronal),
+            // Both conventions look at a body's left side: its front is on the left.
+            plane(RIGHT, run(ANTERIOR, false), SUPERIOR, BodyPlane::Sagittal),
+        ]
+    }
+
+    /// Letters of the body's sides at the right, the left, the top and the bottom of the slices.
+    pub(crate) fn sides(&self, scene: &SceneSpace) -> [String; 4] {
+        sides_along(self.right.in_scene(scene), self.up.in_scene(scene))
+    }
+
+    /// Where the middle of a voxel lies in an area of the screen that the slice fills.
+    pub(crate) fn place(&self, voxel: [usize; 3], dims: [usize; 3], area: Rect) -> Pos2 {
+        let share = |run: ScreenAxis| run.share(voxel[run.axis], dims[run.axis]);
+        pos2(area.left() + share(self.right) * area.width(), area.bottom() - share(self.up) * area.height())
+    }
+
+    /// Moves a voxel within its slice to a place of the screen.
+    pub(crate) fn move_to(&self, at: Pos2, area: Rect, dims: [usize; 3], voxel: &mut [usize; 3]) {
+        let Vec2 { x, y } = (at - area.left_bottom()) / area.size();
+        voxel[self.right.axis] = self.right.index(x, dims[self.right.axis]);
+        voxel[self.up.axis] = self.up.index(-y, dims[self.up.axis]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DAffine3, DMat3};
+
+    use super::*;
+    use crate::data::Samples;
+
+    /// Volume of 2 × 3 × 4 voxels of a body, with axes of the grid in these directions of right-anterior-superior space.
+    fn body(axes: [[f64; 3]; 3]) -> Volume {
+        let world_from_index = DAffine3::from_mat3(DMat3::from_cols_array_2d(&axes));
+        let samples = Samples::U8((0..24).collect());
+        Volume::new("body", [2, 3, 4], world_from_index, samples).unwrap().with_anatomy(true)
+    }
+
+    fn letters(volume: &Volume, convention: Convention) -> [String; 3] {
+        SlicePlane::all(volume, convention).map(|plane| plane.sides(&volume.scene()).concat())
+    }
+
+    #[test]
+    fn bodies_lie_as_people_look_at_them_however_their_voxels_are_stored() {
+        let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let back = |axis: [f64; 3]| axis.map(|c| -c);
+        for axes in [[x, y, z], [back(x), back(y), z], [y, back(z), x], [back(z), x, back(y)]] {
+            let volume = body(axes);
+            // Right, left, top and bottom.
+            assert_eq!(letters(&volume, Convention::Radiological), ["LRAP", "LRSI", "PASI"], "{axes:?}");
+            assert_eq!(letters(&volume, Convention::Neurological), ["RLAP", "RLSI", "PASI"], "{axes:?}");
+            let planes = SlicePlane::all(&volume, Convention::Radiological);
+            let mut across = planes.map(|plane| plane.across);
+            for plane in planes {
+                assert!(
+                    ![plane.right.axis, plane.up.axis].contains(&plane.across)
+                        && plane.right.axis != plane.up.axis,
+                    "{plane:?}"
+                );
+            }
+            across.sort_unstable();
+            assert_eq!(across, [0, 1, 2]);
+            assert_eq!(
+                planes.map(|plane| plane.of_body),
+                [BodyPlane::Axial, BodyPlane::Coronal, BodyPlane::Sagittal].map(Some)
+            );
+        }
+    }
+
+    #[test]
+    fn oblique_bodies_have_the_letters_of_both_sides() {
+        // A quarter of a right angle about the axis from feet to head, then less than 17°.
+        let turned = |deg: f64| DMat3::from_rotation_z(deg.to_radians()).to_cols_array_2d();
+        let oblique = letters(&body(turned(30.0)), Convention::Radiological);
+        assert_eq!(oblique, ["LPRAALPR", "LPRASI", "PRALSI"]);
+        assert_eq!(letters(&body(turned(10.0)), Convention::Radiological), ["LRAP", "LRSI", "PASI"]);
+    }
+
+    #[test]
+    fn other_data_lie_along_their_axes() {
+        let volume = Volume::with_spacing("t", [2, 3, 4], DVec3::ONE, Samples::U8(vec![0; 24])).unwrap();
+        let planes = SlicePlane::all(&volume, Convention::Radiological);
+        assert_eq!(planes.map(|plane| plane.across), [2, 1, 0]);
+        assert_eq!(planes.map(|plane| [plane.right.axis, plane.up.axis]), [[0, 1], [0, 2], [1, 2]]);
+        assert!(planes.iter().all(|plane| plane.of_body.is_none() && !plane.right.is_reversed));
+    }
+
+    #[test]
+    fn places_on_the_screen_lead_back_to_their_voxels() {
+        let area = Rect::from_min_max(pos2(10.0, 20.0), pos2(30.0, 80.0));
+        let dims = [2, 3, 4];
+        for convention in [Convention::Radiological, Convention::Neurological] {
+            for plane in
+                SlicePlane::all(&body([[0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]), convention)
+            {
+                for at in 0..24 {
+                    let voxel = [at % 2, at / 2 % 3, at / 6];
+                    let mut found = [0; 3];
+                    found[plane.across] = voxel[plane.across];
+                    plane.move_to(plane.place(voxel, dims, area), area, dims, &mut found);
+                    assert_eq!(found, voxel, "{plane:?}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! The menu of presets, and which of them it marks.
+
+use chiaroscuro::app::{App, Options};
+use eframe::egui::accesskit::Toggled;
+use eframe::egui::{Key, Modifiers, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+
+use crate::harness::{SCENE, click, wait_until_idle, window_with};
+
+fn is_marked(harness: &Harness<'_, App>, preset: &str) -> bool {
+    harness.get_by_label(preset).accesskit_node().toggled() == Some(Toggled::True)
+}
+
+#[test]
+fn presets_have_one_name_each_and_the_one_in_use_is_marked() {
+    let options = Options { source: Some(SCENE.into()), ..Options::default() };
+    // As high as all of them need.
+    let mut harness = window_with(options, vec2(900.0, 1500.0));
+    click(&mut harness, "Presets");
+    harness.run_steps(4);
+    for title in ["CT angiography", "MR angiography", "Spray", "Fuel injection", "Vapour", "Sunlit cloud"] {
+        assert!(!is_marked(&harness, title), "{title}");
+    }
+    assert!(harness.unnamed_widgets().is_empty());
+    let before = harness.state().settings().transfer.clone();
+    click(&mut harness, "Lobster");
+    assert_ne!(harness.state().settings().transfer, before);
+    harness.run_steps(4);
+    click(&mut harness, "Presets");
+    harness.run_steps(4);
+    assert!(is_marked(&harness, "Lobster") && !is_marked(&harness, "Fuel injection"));
+    harness.key_press(Key::Escape);
+    harness.run_steps(4);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(4);
+    click(&mut harness, "Presets");
+    harness.run_steps(4);
+    assert!(!is_marked(&harness, "Lobster"));
+    harness.key_press(Key::Escape);
+    harness.run_steps(4);
+    wait_until_idle(&mut harness);
+}
