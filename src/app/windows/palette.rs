@@ -3,6 +3,7 @@
 use eframe::egui::{self, Align2, Key, Modifiers, RichText, TextEdit};
 
 use crate::app::common::commands::{self, Command};
+use crate::app::common::shortcuts;
 use crate::app::text;
 use crate::data::DataKind;
 use crate::model::SceneAxis;
@@ -39,6 +40,7 @@ impl Palette {
         if !self.open {
             return;
         }
+        shortcuts::reserve_letters(ctx);
         let down = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::ArrowDown));
         let up = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::ArrowUp));
         let enter = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Enter));
