@@ -2,6 +2,7 @@
 
 mod labels;
 mod layout;
+mod menus;
 mod side;
 mod surroundings;
 
