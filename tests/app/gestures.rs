@@ -124,7 +124,7 @@ fn flicks_slider(harness: &mut Harness<'static, App>) -> (f64, f64) {
     let strength = |harness: &Harness<'_, App>| harness.state().settings().shadows.strength;
     let before = strength(harness);
     let slider = harness.get_by_role_and_label(egui::Role::Slider, "Strength").rect();
-    in_one_frame(harness, flick(slider.right_center() - vec2(5.0, 0.0), vec2(-40.0, 70.0)));
+    in_one_frame(harness, flick(slider.center(), vec2(-20.0, 70.0)));
     (before, strength(harness))
 }
 

@@ -27,7 +27,10 @@ pub(in crate::app) fn scrolling_menu<R>(
         // Nothing else says that there is more.
         ui.spacing_mut().scroll = ScrollStyle::solid();
         let height = room(ui.ctx()).height() - 2.0 * MENU_MARGIN;
-        let shown = ScrollArea::vertical().max_height(height).show(ui, |ui| {
+        // As high as its rows, whatever the toolkit thinks that a window needs, and at most as the room; and as wide.
+        let scroll = ScrollArea::vertical().max_height(height).min_scrolled_height(height);
+        let shown = scroll.show(ui, |ui| {
+            ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
             let added = add(ui);
             follow_focus(ui);
             added

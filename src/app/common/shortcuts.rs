@@ -111,11 +111,16 @@ pub(crate) fn from_keys(ctx: &egui::Context, commands: &mut Vec<Command>) {
     let typing = are_letters_reserved(ctx);
     commands.extend(view_slots(ctx));
     for (shortcut, command) in &SHORTCUTS {
-        let plain = !shortcut.modifiers.command;
+        let plain = !shortcut.modifiers.command && !is_function_key(shortcut.logical_key);
         if !(typing && plain) && ctx.input_mut(|input| input.consume_shortcut(shortcut)) {
             commands.push(command.clone());
         }
     }
+}
+
+/// Whether a key is F1, F2 and so on, which are in no text.
+pub(crate) fn is_function_key(key: Key) -> bool {
+    key.name().strip_prefix('F').is_some_and(|number| number.parse::<u8>().is_ok())
 }
 
 /// Where the last pass is kept in which letters were for text alone.

@@ -31,7 +31,7 @@ fn all_rows_of_menus_are_reached_in_low_windows() {
     for size in SIZES {
         harness.set_size(size);
         harness.run_steps(6);
-        for (menu, last) in [("File", "Quit"), ("View", "Theme"), ("Light", "Key"), ("Presets", "Chair")] {
+        for (menu, last) in [("File", "Quit"), ("View", "Theme"), ("Light", "Fill"), ("Presets", "Chair")] {
             open(&mut harness, menu);
             if bottom(&harness, last) > size.y {
                 let rows = row_of(&harness, last);

@@ -109,9 +109,9 @@ fn drawings_lead_to_the_titles_of_sections() {
             let drawing = harness.get_by_label(&format!("Go to {section}")).rect();
             harness.get_by_label(&format!("Go to {section}")).click();
             harness.run_steps(14);
-            let title = harness.get_all_by_label(section).map(|node| node.rect());
-            let title = title.filter(|rect| rect.left() >= picture_of(&harness).right()).next();
-            let title = title.expect("a title in the panel");
+            let panel = picture_of(&harness).right();
+            let mut titles = harness.get_all_by_label(section).map(|node| node.rect());
+            let title = titles.find(|rect| rect.left() >= panel).expect("a title in the panel");
             let below = title.top() - drawing.bottom();
             let is_at_end = end_of_panel(&harness) <= 600.0;
             assert!(

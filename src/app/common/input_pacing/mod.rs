@@ -15,7 +15,7 @@ use std::collections::VecDeque;
 
 use eframe::egui::{self, Event, InputOptions, Key, Modifiers, PointerButton, Pos2};
 
-use super::shortcuts::are_letters_reserved;
+use super::shortcuts::{are_letters_reserved, is_function_key};
 
 /// A frame that takes longer than this is slow: about half of what the toolkit lets pass between two clicks of a double
 /// click (0.3 s).
@@ -96,8 +96,10 @@ impl Role {
 
 /// Whether a key does more than edit the text of a field: it leaves the field, or stands for a command everywhere.
 fn leaves_field(key: Key, modifiers: Modifiers) -> bool {
-    let is_function = key.name().strip_prefix('F').is_some_and(|number| number.parse::<u8>().is_ok());
-    matches!(key, Key::Tab | Key::Enter | Key::Escape) || is_function || modifiers.command || modifiers.ctrl
+    matches!(key, Key::Tab | Key::Enter | Key::Escape)
+        || is_function_key(key)
+        || modifiers.command
+        || modifiers.ctrl
 }
 
 /// Whether a key steps through values or rows, also while a text is edited.

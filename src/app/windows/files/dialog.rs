@@ -1,6 +1,5 @@
 //! The desktop's file dialog, asked for on a thread of its own: what was chosen, or that there was none to choose in.
 
-use std::future::Future;
 use std::io;
 use std::path::PathBuf;
 use std::pin::Pin;
