@@ -36,6 +36,8 @@ pub(crate) enum Fault {
     Shader,
     /// Every wait for the adapter takes so much longer.
     Slow(Duration),
+    /// Every frame of the window takes so much longer.
+    SlowFrames(Duration),
     /// Nothing can be written.
     FullDisk,
     /// The N-th block that is read of a volume cannot be.
@@ -47,7 +49,7 @@ impl FromStr for Fault {
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let expected = "expected lost@N, pictures-lost@N, oom@K, panic:loader|worker|ui|export, shader, slow:MS, \
-                        full-disk or read-error@N";
+                        slow-frames:MS, full-disk or read-error@N";
         let unknown = || format!("{expected}; found {text:?}");
         let number = |digits: &str| digits.parse::<u64>().ok().ok_or_else(unknown);
         if let Some((what, count)) = text.split_once('@') {
@@ -68,8 +70,13 @@ impl FromStr for Fault {
             "panic:ui" => Ok(Self::Panic(Place::Window)),
             "panic:export" => Ok(Self::Panic(Place::Export)),
             _ => {
-                let millis = text.strip_prefix("slow:").ok_or_else(unknown)?;
-                Ok(Self::Slow(Duration::from_millis(number(millis)?)))
+                let (what, millis) = text.split_once(':').ok_or_else(unknown)?;
+                let longer = || number(millis).map(Duration::from_millis);
+                match what {
+                    "slow" => longer().map(Self::Slow),
+                    "slow-frames" => longer().map(Self::SlowFrames),
+                    _ => Err(unknown()),
+                }
             }
         }
     }
@@ -129,16 +136,25 @@ pub(crate) fn may_panic(place: Place) {
     assert!(!is_on(Fault::Panic(place)), "a fault was asked for: panic in {place:?}");
 }
 
-/// How much longer waits for the adapter take.
-pub(crate) fn slowness() -> Duration {
+/// Sum of the durations that `of` gives for the chosen faults.
+fn sum(of: impl Fn(&Fault) -> Option<Duration>) -> Duration {
     let mut by = Duration::ZERO;
     any(|chosen| {
-        if let Fault::Slow(longer) = chosen {
-            by += *longer;
-        }
+        by += of(chosen).unwrap_or_default();
         false
     });
     by
+}
+
+/// How much longer waits for the adapter take.
+pub(crate) fn slowness() -> Duration {
+    sum(|chosen| if let Fault::Slow(longer) = chosen { Some(*longer) } else { None })
+}
+
+/// How much longer frames of the window take.
+#[cfg(any(feature = "window", test))]
+pub(crate) fn frame_delay() -> Duration {
+    sum(|chosen| if let Fault::SlowFrames(longer) = chosen { Some(*longer) } else { None })
 }
 
 #[cfg(test)]
@@ -152,7 +168,20 @@ mod tests {
         assert_eq!(read("oom@3"), Ok(Fault::OutOfMemory(3)));
         assert_eq!(read("panic:ui"), Ok(Fault::Panic(Place::Window)));
         assert_eq!(read("slow:250"), Ok(Fault::Slow(Duration::from_millis(250))));
-        for wrong in ["", "lost", "lost@", "lost@x", "oom@-1", "panic:", "slow:", "slow:1.5", "fire@3"] {
+        assert_eq!(read("slow-frames:300"), Ok(Fault::SlowFrames(Duration::from_millis(300))));
+        for wrong in [
+            "slow-frames",
+            "slowly:3",
+            "",
+            "lost",
+            "lost@",
+            "lost@x",
+            "oom@-1",
+            "panic:",
+            "slow:",
+            "slow:1.5",
+            "fire@3",
+        ] {
             assert!(read(wrong).unwrap_err().contains("oom@K"), "{wrong}");
         }
     }
@@ -163,6 +192,6 @@ mod tests {
         assert!(!is_due(&count, Fault::OutOfMemory) && !is_on(Fault::FullDisk));
         assert_eq!(count.0.load(Ordering::Relaxed), 0, "nor is anything counted");
         may_panic(Place::Loader);
-        assert_eq!(slowness(), Duration::ZERO);
+        assert_eq!((slowness(), frame_delay()), (Duration::ZERO, Duration::ZERO));
     }
 }

@@ -183,7 +183,7 @@ open_screen() {
     trap 'exit 130' INT TERM
     prefer_software_driver
 
-    unset WAYLAND_DISPLAY WAYLAND_SOCKET
+    unset WAYLAND_DISPLAY WAYLAND_SOCKET DBUS_SESSION_BUS_ADDRESS
     export XDG_CONFIG_HOME=$out/home/config XDG_DATA_HOME=$out/home/data XDG_CACHE_HOME=$out/home/cache
     export XDG_STATE_HOME=$out/home/state XDG_RUNTIME_DIR=$out/home/runtime
     mkdir -p "$XDG_CONFIG_HOME" "$XDG_DATA_HOME" "$XDG_CACHE_HOME" "$XDG_STATE_HOME" "$XDG_RUNTIME_DIR"

@@ -25,13 +25,14 @@ pub use self::start::no_adapter::show_on_desktop;
 pub use self::start::options::{Adjustment, Options};
 pub use self::start::run::{run, storage_folder, wgpu_setup};
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use eframe::egui;
 
 use self::common::give_up::GiveUp;
-use self::common::{light_keys, shortcuts};
+use self::common::{light_keys, reveal, shortcuts};
 use self::shell::{status_file, surroundings};
 use self::windows::files;
 
@@ -342,6 +343,8 @@ impl eframe::App for App {
             handles: self.handles.positions(),
             light_rebuilds: self.light_rebuilds(),
             errors: self.messages.errors(),
+            path_window: self.files.path_window(),
+            places: if self.status_file.is_on() { reveal::reported(&ctx) } else { BTreeMap::new() },
             pixels_per_point: ctx.pixels_per_point(),
         };
         self.status_file.update(&state);

@@ -5,7 +5,10 @@ use eframe::egui::{self, Event, Modifiers, PointerButton, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{bare_window, click, drag, drag_with, picture, render, wait_until_idle, window};
+use crate::harness::{
+    bare_window, click, drag, drag_with, flick, in_one_frame, picture, render, slow_window, stroke,
+    wait_until_idle, window,
+};
 
 #[test]
 fn the_window_shows_what_the_renderer_makes() {
@@ -81,6 +84,67 @@ fn handles_are_taken_without_hovering() {
     let after = harness.state().settings();
     assert_ne!(after.lights[0].position, before.lights[0].position);
     assert_eq!(after.camera, before.camera);
+}
+
+/// Whatever is pressed is what is dragged, however far the pointer has gone when the next frame begins.
+#[test]
+fn what_is_flicked_within_a_frame_is_what_was_pressed() {
+    let mut harness = slow_window(vec2(760.0, 1140.0));
+    let camera = harness.state().settings().camera.clone();
+    let flicks = |harness: &mut Harness<'static, App>, what: &str, by: egui::Vec2| {
+        let before = harness.state().settings().clone();
+        let from = harness.get_by_label(what).rect().center();
+        in_one_frame(harness, flick(from, by));
+        let after = harness.state().settings().clone();
+        assert_eq!(after.camera, camera, "{what}: the camera turned");
+        assert_ne!(after, before, "{what} stayed");
+        (before, after)
+    };
+    // A number of the panel, by its slider.
+    let (before, after) = flicks_slider(&mut harness);
+    assert_ne!(after, before);
+    let (before, after) = flicks(&mut harness, "Light handle Key", vec2(-60.0, 45.0));
+    assert_ne!(after.lights[0].position, before.lights[0].position);
+    in_one_frame(&mut harness, stroke(egui::Key::K, Modifiers::NONE).to_vec());
+    let (_, after) = flicks(&mut harness, "Crop box, side +z", vec2(0.0, 60.0));
+    assert!(after.cuts.crop.high[2] < 1.0);
+    let keys = [egui::Key::K, egui::Key::X].map(|key| stroke(key, Modifiers::NONE));
+    in_one_frame(&mut harness, keys.concat());
+    let place = |harness: &Harness<'_, App>, part| {
+        harness.get_by_label(&format!("Clip plane, {part}")).rect().center()
+    };
+    let along = place(&harness, "direction") - place(&harness, "place");
+    let (_, after) = flicks(&mut harness, "Clip plane, place", along * 0.8);
+    assert!(after.cuts.plane.on && after.cuts.plane.offset > 0.1, "{:?}", after.cuts.plane);
+    wait_until_idle(&mut harness);
+}
+
+/// The strength of shadows before and after its slider was flicked.
+fn flicks_slider(harness: &mut Harness<'static, App>) -> (f64, f64) {
+    let strength = |harness: &Harness<'_, App>| harness.state().settings().shadows.strength;
+    let before = strength(harness);
+    let slider = harness.get_by_role_and_label(egui::Role::Slider, "Strength").rect();
+    in_one_frame(harness, flick(slider.center(), vec2(-20.0, 70.0)));
+    (before, strength(harness))
+}
+
+/// Strokes that come together are as many: each takes one step back.
+#[test]
+fn keys_that_are_struck_within_a_frame_are_counted() {
+    let mut harness = slow_window(vec2(760.0, 1140.0));
+    let before = harness.state().settings().clone();
+    for _ in 0..3 {
+        harness.key_press(egui::Key::CloseBracket);
+        // Longer than changes of one step may lie apart.
+        harness.run_steps(12);
+    }
+    assert!(harness.state().settings().lights[0].intensity > 1.3 * before.lights[0].intensity);
+    let undo = stroke(egui::Key::Z, Modifiers::COMMAND);
+    let modifiers = |modifiers| vec![Event::ModifiersChanged(modifiers)];
+    let events = [modifiers(Modifiers::COMMAND), vec![undo; 3].concat(), modifiers(Modifiers::NONE)];
+    in_one_frame(&mut harness, events.concat());
+    assert_eq!(harness.state().settings().lights, before.lights);
+    wait_until_idle(&mut harness);
 }
 
 #[test]
@@ -217,14 +281,17 @@ fn escape_closes_windows_one_by_one() {
         harness.key_press(key);
         harness.run_steps(4);
     };
+    press(&mut harness, egui::Key::D);
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::E);
     harness.run_steps(4);
-    press(&mut harness, egui::Key::D);
     let is_open = |harness: &Harness<'_, App>, title: &str| harness.query_by_label(title).is_some();
     assert!(is_open(&harness, "Slices") && is_open(&harness, "Export picture or turntable"));
     press(&mut harness, egui::Key::Escape);
-    assert!(!is_open(&harness, "Slices") && is_open(&harness, "Export picture or turntable"));
+    press(&mut harness, egui::Key::D);
+    assert!(is_open(&harness, "Slices"), "letters are no commands where a name is typed");
     press(&mut harness, egui::Key::Escape);
-    assert!(!is_open(&harness, "Export picture or turntable"));
+    assert!(is_open(&harness, "Slices") && !is_open(&harness, "Export picture or turntable"));
+    press(&mut harness, egui::Key::Escape);
+    assert!(!is_open(&harness, "Slices"));
     wait_until_idle(&mut harness);
 }

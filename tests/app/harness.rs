@@ -26,30 +26,42 @@ pub(crate) fn window() -> Harness<'static, App> {
 
 /// A window of some size, in points. Unless the options say something of the first look, its balance is not kept:
 /// settings change when the test changes them, and only then.
-pub(crate) fn window_with(mut options: Options, size: Vec2) -> Harness<'static, App> {
+pub(crate) fn window_with(options: Options, size: Vec2) -> Harness<'static, App> {
+    paced_window_with(options, size, QUICK_FRAME_S)
+}
+
+/// A window of some size whose frames take 0.3 s, by its clock.
+pub(crate) fn slow_window(size: Vec2) -> Harness<'static, App> {
+    paced_window_with(Options { source: Some(SCENE.into()), ..Options::default() }, size, 0.3)
+}
+
+/// Seconds that a frame takes by the window's clock.
+const QUICK_FRAME_S: f32 = 0.1;
+
+fn paced_window_with(mut options: Options, size: Vec2, frame_s: f32) -> Harness<'static, App> {
     options.adjust.get_or_insert_with(|| {
         Box::new(|mut settings| {
             settings.shadows.keep_balanced = false;
             settings
         })
     });
-    let mut harness = untouched_window_of(options, size);
+    let mut harness = untouched_window_of(options, size, frame_s);
     wait_until_idle(&mut harness);
     harness
 }
 
 /// A window that does with the first look all that it does by itself; its picture is not there yet.
 pub(crate) fn untouched_window(options: Options) -> Harness<'static, App> {
-    untouched_window_of(options, Vec2::new(760.0, 1140.0))
+    untouched_window_of(options, Vec2::new(760.0, 1140.0), QUICK_FRAME_S)
 }
 
-fn untouched_window_of(options: Options, size: Vec2) -> Harness<'static, App> {
+fn untouched_window_of(options: Options, size: Vec2, frame_s: f32) -> Harness<'static, App> {
     let mut setup = wgpu_setup();
     // As the tests of the renderer: the first adapter that there is, software included.
     setup.power_preference = wgpu::PowerPreference::None;
     Harness::builder()
         .with_size(size)
-        .with_step_dt(0.1)
+        .with_step_dt(frame_s)
         .wgpu_setup(setup.into())
         .build_eframe(|cc| App::new(cc, options).expect("a window"))
 }
@@ -96,6 +108,47 @@ pub(crate) fn drag_with(harness: &mut Harness<'_, App>, button: PointerButton, f
     }
     harness.event(button(from + by, false));
     harness.step();
+}
+
+/// Gives the window in one frame what hands do while a slow one is drawn, and then as many frames as it needs for it.
+pub(crate) fn in_one_frame(harness: &mut Harness<'_, App>, events: Vec<Event>) {
+    harness.input_mut().events.extend(events);
+    harness.run_steps(20);
+}
+
+/// Grabs what is at a place and throws it, as somebody does who is quicker than a frame.
+pub(crate) fn flick(from: Pos2, by: Vec2) -> Vec<Event> {
+    let button = |pos, pressed| Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    let mut events = vec![Event::PointerMoved(from), button(from, true)];
+    events.extend((1..=4).map(|step| Event::PointerMoved(from + by * (step as f32 / 4.0))));
+    events.push(button(from + by, false));
+    events
+}
+
+/// What a keyboard sends for a text of letters, digits and stops.
+pub(crate) fn keys_of(text: &str) -> Vec<Event> {
+    let sign = |sign: char| {
+        let name = match sign {
+            '.' => "Period".to_owned(),
+            '/' => "Slash".to_owned(),
+            ':' => "Colon".to_owned(),
+            _ => sign.to_uppercase().to_string(),
+        };
+        let key = egui::Key::from_name(&name).expect("a key");
+        let [down, up] = stroke(key, Modifiers::NONE);
+        [down, Event::Text(sign.to_string()), up]
+    };
+    text.chars().flat_map(sign).collect()
+}
+
+/// A key that is struck: down and up.
+pub(crate) fn stroke(key: egui::Key, modifiers: Modifiers) -> [Event; 2] {
+    [true, false].map(|pressed| Event::Key { key, physical_key: None, pressed, repeat: false, modifiers })
 }
 
 /// Turns the wheel by so many points, upwards if positive, where the pointer is.

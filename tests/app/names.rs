@@ -80,9 +80,10 @@ fn every_widget_has_a_name() {
         press(&mut harness, Modifiers::NONE, Key::Escape);
     }
     for (modifiers, key, what) in [
+        // Before letters are for a text.
+        (Modifiers::NONE, Key::D, "slices"),
         (Modifiers::COMMAND, Key::E, "the export window"),
         (Modifiers::COMMAND, Key::L, "the window for a path"),
-        (Modifiers::NONE, Key::D, "slices"),
         (Modifiers::NONE, Key::F1, "keys and mouse"),
         (Modifiers::COMMAND, Key::P, "the palette"),
     ] {

@@ -6,6 +6,7 @@ pub(super) mod commands;
 pub(super) mod dock;
 pub(super) mod frame;
 pub(super) mod give_up;
+pub(super) mod input_pacing;
 pub(super) mod light_keys;
 pub(super) mod places;
 pub(super) mod preset_use;

@@ -1,5 +1,7 @@
 //! Showing where something is set: its section opens, and its row comes into sight and glows for a moment.
 
+use std::collections::BTreeMap;
+
 use eframe::egui::{self, Align, Id, Rect, Ui};
 
 use super::theme;
@@ -17,8 +19,11 @@ pub(crate) struct Place {
 
 /// Seconds that a row glows.
 const GLOW_S: f64 = 2.0;
-/// Seconds during which it is scrolled to: as long as sections take to open.
-const SCROLL_S: f64 = 0.5;
+/// Passes after which what is scrolled to has come to rest, if it lay in the same place in all of them: one finds out
+/// where it goes, and the next moves it.
+const PASSES_AT_REST: u8 = 3;
+/// Points by which something moves that has not come to rest.
+const MOVED: f32 = 0.5;
 
 /// What is being shown.
 #[derive(Debug, Clone, Copy)]
@@ -31,6 +36,40 @@ struct Shown {
     unfolded: Option<u64>,
     /// The last pass in which its row was there.
     seen: Option<u64>,
+    way: Way,
+}
+
+/// The way to what is scrolled to. It is followed by passes and not by time: where frames are slow, few of them fit into
+/// the seconds in which a quick window arrives.
+#[derive(Debug, Clone, Copy, Default)]
+struct Way {
+    /// Where it was in the pass before: its upper edge in points of the window.
+    top: f32,
+    /// Passes in which it has not moved since.
+    at_rest: u8,
+    has_begun: bool,
+}
+
+impl Way {
+    const END: Self = Self { top: 0.0, at_rest: PASSES_AT_REST, has_begun: true };
+
+    fn is_over(self) -> bool {
+        self.at_rest >= PASSES_AT_REST
+    }
+
+    /// Scrolls on to an area. `may_rest`: what is around it does not move by itself. Whoever scrolls meanwhile is left
+    /// alone.
+    fn follow(self, ui: &Ui, area: Rect, align: Align, may_rest: bool) -> Self {
+        let is_wheel = |event: &egui::Event| matches!(event, egui::Event::MouseWheel { .. });
+        let is_left = self.has_begun && ui.input(|input| input.events.iter().any(is_wheel));
+        if self.is_over() || is_left {
+            return Self::END;
+        }
+        ui.scroll_to_rect(area, Some(align));
+        ui.ctx().request_repaint();
+        let rests = self.has_begun && may_rest && (area.top() - self.top).abs() < MOVED;
+        Self { top: area.top(), at_rest: if rests { self.at_rest + 1 } else { 0 }, has_begun: true }
+    }
 }
 
 fn id() -> Id {
@@ -43,14 +82,15 @@ fn now_s(ctx: &egui::Context) -> f64 {
 
 /// Begins to show a place.
 pub(crate) fn reveal(ctx: &egui::Context, place: Place) {
-    let shown = Shown { place, since_s: now_s(ctx), opened: [None; 2], unfolded: None, seen: None };
+    let way = Way::default();
+    let shown = Shown { place, since_s: now_s(ctx), opened: [None; 2], unfolded: None, seen: None, way };
     ctx.data_mut(|data| data.insert_temp(id(), shown));
     ctx.request_repaint();
 }
 
 fn shown(ctx: &egui::Context) -> Option<Shown> {
     let shown: Shown = ctx.data(|data| data.get_temp(id()))?;
-    (now_s(ctx) - shown.since_s < GLOW_S).then_some(shown)
+    (now_s(ctx) - shown.since_s < GLOW_S || !shown.way.is_over()).then_some(shown)
 }
 
 /// Whether a section, or what is folded away in it, is to open now. Says so during one pass: a section can have several
@@ -69,18 +109,26 @@ pub(in crate::app) fn opens(ctx: &egui::Context, section: &str, is_advanced: boo
     opened == pass
 }
 
-/// Whether a section as a whole is being scrolled to: also where the row that is sought in it is not there, since it
-/// belongs to something that is off.
-pub(in crate::app) fn is_led_to(ctx: &egui::Context, section: &str) -> bool {
-    shown(ctx).is_some_and(|shown| {
-        let is_row_there = shown.seen == Some(ctx.cumulative_pass_nr());
-        shown.place.section == section && !is_row_there && now_s(ctx) - shown.since_s < SCROLL_S
-    })
+/// Scrolls to a section as a whole, its title at the top, if that is what is shown; also where the row that is sought in it
+/// is not there, since it belongs to something that is off. `is_open`: it has come to its full height. Whether it is being
+/// scrolled to.
+pub(in crate::app) fn lead_to_section(ui: &Ui, section: &str, title: Rect, is_open: bool) -> bool {
+    let ctx = ui.ctx();
+    report(ctx, title, || section.to_owned());
+    let Some(mut shown) = shown(ctx).filter(|shown| shown.place.section == section) else { return false };
+    let is_row_there = shown.seen == Some(ctx.cumulative_pass_nr());
+    if is_row_there || shown.way.is_over() {
+        return false;
+    }
+    shown.way = shown.way.follow(ui, title, Align::TOP, is_open);
+    ctx.data_mut(|data| data.insert_temp(id(), shown));
+    true
 }
 
 /// Lets a row glow, if it is that which is shown.
 pub(in crate::app) fn glow(ui: &Ui, section: &str, row: &str, area: Rect) {
     let ctx = ui.ctx();
+    report(ctx, area, || format!("{section}/{row}"));
     let Some(mut shown) = shown(ctx) else { return };
     if shown.place.section != section || shown.place.row != Some(row) {
         return;
@@ -91,12 +139,10 @@ pub(in crate::app) fn glow(ui: &Ui, section: &str, row: &str, area: Rect) {
         return;
     }
     shown.seen = pass;
+    shown.way = shown.way.follow(ui, area, Align::Center, true);
     ctx.data_mut(|data| data.insert_temp(id(), shown));
     let age = now_s(ctx) - shown.since_s;
-    if age < SCROLL_S {
-        ui.scroll_to_rect(area, Some(Align::Center));
-    }
-    let strength = (1.0 - age / GLOW_S) as f32;
+    let strength = (1.0 - age / GLOW_S).max(0.0) as f32;
     ui.painter().rect_filled(area.expand(3.0), 4.0, theme::ACCENT.gamma_multiply(0.35 * strength));
     ctx.request_repaint();
 }
@@ -106,6 +152,39 @@ pub(crate) fn show_section(ctx: &egui::Context, section: &'static str, is_on: bo
     if is_on {
         reveal(ctx, Place { section, row: None, is_advanced: false });
     }
+}
+
+/// Places of the panel in one pass: areas in points of the window, by section, by section and row (`Data/Spacing`), and by
+/// what the names of buttons are.
+#[derive(Debug, Clone, Default)]
+struct Reported {
+    pass: u64,
+    areas: BTreeMap<String, Rect>,
+}
+
+fn reported_id() -> Id {
+    Id::unique("reported places")
+}
+
+/// Notes where something is, for whoever watches the window from outside.
+pub(in crate::app) fn report(ctx: &egui::Context, area: Rect, name: impl FnOnce() -> String) {
+    let pass = ctx.cumulative_pass_nr();
+    ctx.data_mut(|data| {
+        // It is not there unless somebody watches.
+        let Some(mut reported) = data.get_temp::<Reported>(reported_id()) else { return };
+        if reported.pass != pass {
+            reported = Reported { pass, ..Reported::default() };
+        }
+        reported.areas.insert(name(), area);
+        data.insert_temp(reported_id(), reported);
+    });
+}
+
+/// Where things were in this pass, from the second time on.
+pub(crate) fn reported(ctx: &egui::Context) -> BTreeMap<String, Rect> {
+    let reported: Reported =
+        ctx.data_mut(|data| data.get_temp_mut_or_default::<Reported>(reported_id()).clone());
+    reported.areas
 }
 
 #[cfg(test)]
@@ -139,10 +218,11 @@ mod tests {
     fn a_row_that_is_folded_away_is_told_from_one_of_its_name_above() {
         run(|ui| {
             glow(ui, SECTION, ROW, Rect::ZERO);
-            assert!(is_led_to(ui.ctx(), SECTION), "the section is, as long as its row is not there");
+            let is_led_to = |ui: &Ui| lead_to_section(ui, SECTION, Rect::ZERO, true);
+            assert!(is_led_to(ui), "the section is, as long as its row is not there");
             opens(ui.ctx(), SECTION, true);
             glow(ui, SECTION, ROW, Rect::ZERO);
-            assert!(!is_led_to(ui.ctx(), SECTION));
+            assert!(!is_led_to(ui));
         });
     }
 }

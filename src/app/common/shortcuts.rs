@@ -102,16 +102,43 @@ pub(crate) fn key_text(ctx: &egui::Context, shortcut: KeyboardShortcut) -> Strin
     signs.into_iter().fold(named, |text, (key, sign)| text.replace(key.name(), sign))
 }
 
-/// Adds the commands whose keys were pressed. Letters are left to text fields while one is edited.
+/// Adds the commands whose keys were pressed. Letters are left to text fields while one is edited, in the frame after
+/// that, and while a window is open in which text is typed.
 pub(crate) fn from_keys(ctx: &egui::Context, commands: &mut Vec<Command>) {
-    let typing = is_typing(ctx);
+    if is_typing(ctx) {
+        reserve_letters(ctx);
+    }
+    let typing = are_letters_reserved(ctx);
     commands.extend(view_slots(ctx));
     for (shortcut, command) in &SHORTCUTS {
-        let plain = !shortcut.modifiers.command;
+        let plain = !shortcut.modifiers.command && !is_function_key(shortcut.logical_key);
         if !(typing && plain) && ctx.input_mut(|input| input.consume_shortcut(shortcut)) {
             commands.push(command.clone());
         }
     }
+}
+
+/// Whether a key is F1, F2 and so on, which are in no text.
+pub(crate) fn is_function_key(key: Key) -> bool {
+    key.name().strip_prefix('F').is_some_and(|number| number.parse::<u8>().is_ok())
+}
+
+/// Where the last pass is kept in which letters were for text alone.
+fn reserved_id() -> egui::Id {
+    egui::Id::unique("letters are for text")
+}
+
+/// Keeps letters and digits from being commands, in this frame and the next. Windows in which text is typed call it while
+/// they are open: whoever misses their field with a click has not asked for twenty commands.
+pub(crate) fn reserve_letters(ctx: &egui::Context) {
+    let pass = ctx.cumulative_pass_nr();
+    ctx.data_mut(|data| data.insert_temp(reserved_id(), pass));
+}
+
+/// Whether letters and digits are for a text, and no commands.
+pub(crate) fn are_letters_reserved(ctx: &egui::Context) -> bool {
+    let last: Option<u64> = ctx.data(|data| data.get_temp(reserved_id()));
+    last.is_some_and(|last| ctx.cumulative_pass_nr() <= last + 1)
 }
 
 /// Whether letters go into a text field.
@@ -155,6 +182,34 @@ mod tests {
         names.sort();
         names.dedup();
         assert_eq!(names.len(), count);
+    }
+
+    /// The commands of a frame in which G was struck, and whether the letters of that frame are reserved.
+    fn commands_of_g(ctx: &egui::Context, reserves: bool) -> Vec<Command> {
+        let key = Event::Key {
+            key: Key::G,
+            physical_key: None,
+            pressed: true,
+            repeat: false,
+            modifiers: Modifiers::NONE,
+        };
+        let mut commands = Vec::new();
+        let input = egui::RawInput { events: vec![key], ..egui::RawInput::default() };
+        let mut output = ctx.run_ui(input, |ui| {
+            from_keys(ui.ctx(), &mut commands);
+            if reserves {
+                reserve_letters(ui.ctx());
+            }
+        });
+        output.textures_delta.clear();
+        commands
+    }
+
+    #[test]
+    fn letters_are_no_commands_while_a_window_takes_text_nor_in_the_frame_after() {
+        let ctx = egui::Context::default();
+        let found = [false, true, true, false, false].map(|reserves| commands_of_g(&ctx, reserves).len());
+        assert_eq!(found, [1, 1, 0, 0, 1]);
     }
 
     #[test]

@@ -7,7 +7,7 @@ use eframe::egui::{
 
 use super::thumbnails::{Thumbnails, size_for};
 use crate::app::common::commands::Command;
-use crate::app::common::theme;
+use crate::app::common::{shortcuts, theme};
 use crate::app::text::{self, Named};
 use crate::model::{DIGITS, Kept, MAX_NAME, Settings};
 
@@ -206,6 +206,7 @@ impl Strip {
 
 /// What the right button offers.
 fn menu(ui: &mut Ui, at: usize, settings: &mut Settings, commands: &mut Vec<Command>) -> Option<Act> {
+    shortcuts::reserve_letters(ui.ctx());
     let mut act = None;
     let mut close = false;
     let taken: Vec<_> = settings.kept.iter().filter_map(|kept| kept.digit).collect();

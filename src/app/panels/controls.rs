@@ -221,7 +221,8 @@ pub(super) struct Header {
     pub can_reset: bool,
 }
 
-/// A section of the panel. While it opens it is scrolled into sight: all of it, or as much as there is room for.
+/// A section of the panel. While it opens it is scrolled into sight: all of it, or as much as there is room for. Whoever is
+/// led to it finds its title at the top.
 /// `is_active`: a dot says that something is on in it. `can_reset`: there is something to put back; returns whether that is
 /// wanted.
 pub(super) fn section(
@@ -261,12 +262,9 @@ pub(super) fn section(
     let id = shown.header_response.id.with("openness");
     let before = ui.data(|data| data.get_temp::<f32>(id)).unwrap_or(shown.openness);
     ui.data_mut(|data| data.insert_temp(id, shown.openness));
-    let is_led_to = reveal::is_led_to(ui.ctx(), title);
-    if is_led_to {
-        ui.ctx().request_repaint();
-    }
-    if shown.openness > before || is_led_to {
-        let header = shown.header_response.rect;
+    let header = shown.header_response.rect;
+    let is_led_to = reveal::lead_to_section(ui, title, header, shown.openness >= 1.0);
+    if shown.openness > before && !is_led_to {
         let whole = shown.body_response.map_or(header, |body| header.union(body.rect));
         let has_room = whole.height() <= ui.clip_rect().height();
         let (rect, align) = if has_room { (whole, None) } else { (header, Some(Align::TOP)) };

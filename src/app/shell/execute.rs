@@ -269,7 +269,10 @@ impl App {
             Some(Ok(Exported::Cancelled)) => self.messages.note(text::messages::EXPORT_CANCELLED),
             Some(Err(err)) => self.messages.error(text::messages::PICTURE_NOT_EXPORTED, err),
         }
-        if let Some((purpose, path)) = self.files.take() {
+        if self.files.take_refusal() {
+            self.messages.note(text::files::DIALOG_IS_OPEN);
+        }
+        if let Some((purpose, path)) = self.files.take(ctx) {
             self.chosen(purpose, &path, ctx);
             if purpose == Purpose::ExportPicture {
                 // The desktop's dialog has asked.

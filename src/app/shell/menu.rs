@@ -4,7 +4,7 @@ use eframe::egui::{self, Button, ThemePreference};
 
 use crate::app::common::aspect::Alternatives;
 use crate::app::common::commands::Command;
-use crate::app::common::theme;
+use crate::app::common::{frame, theme};
 use crate::app::memory::{EarlierRun, RecentFile, RecentPictures};
 use crate::app::text;
 use crate::app::windows::recovery;
@@ -67,17 +67,17 @@ pub(crate) struct Shown {
 pub(crate) fn show(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     egui::Panel::top("menu").resizable(false).frame(theme::panel(ui)).show(ui, |ui| {
         egui::MenuBar::new().ui(ui, |ui| {
-            ui.menu_button(text::menu::FILE, |ui| file(ui, menu));
-            ui.menu_button(text::menu::EDIT, |ui| {
+            frame::scrolling_menu(ui, text::menu::FILE, |ui| file(ui, menu));
+            frame::scrolling_menu(ui, text::menu::EDIT, |ui| {
                 step(ui, menu, Command::Undo, true);
                 step(ui, menu, Command::Redo, false);
                 item(ui, menu, Command::ToggleHistory, true);
                 ui.separator();
                 item(ui, menu, Command::ShowPalette, true);
             });
-            ui.menu_button(text::menu::VIEW, |ui| view(ui, menu));
-            ui.menu_button(text::menu::LIGHT, |ui| light(ui, menu));
-            ui.menu_button(text::menu::HELP, |ui| {
+            frame::scrolling_menu(ui, text::menu::VIEW, |ui| view(ui, menu));
+            frame::scrolling_menu(ui, text::menu::LIGHT, |ui| light(ui, menu));
+            frame::scrolling_menu(ui, text::menu::HELP, |ui| {
                 item(ui, menu, Command::ShowHelp, true);
                 item(ui, menu, Command::ToggleMessages, true);
                 item(ui, menu, Command::ShowAbout, true);
@@ -133,7 +133,7 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     item(ui, menu, Command::NextFile, true);
     item(ui, menu, Command::PreviousFile, true);
     ui.add_enabled_ui(!menu.recent.is_empty(), |ui| {
-        ui.menu_button(text::menu::OPEN_RECENT, |ui| {
+        frame::scrolling_menu(ui, text::menu::OPEN_RECENT, |ui| {
             for recent in menu.recent {
                 let path = &recent.path;
                 let whole = path.to_string_lossy();
@@ -158,7 +158,7 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     });
     item(ui, menu, Command::GoOn, !menu.earlier.is_empty());
     ui.add_enabled_ui(!menu.earlier.is_empty(), |ui| {
-        ui.menu_button(text::menu::EARLIER_LOOKS, |ui| {
+        frame::scrolling_menu(ui, text::menu::EARLIER_LOOKS, |ui| {
             for run in menu.earlier {
                 if ui.button(recovery::name(run)).on_hover_text(&run.source).clicked() {
                     menu.commands.push(Command::Open(run.look.clone()));
@@ -166,7 +166,7 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
             }
         });
     });
-    ui.menu_button(text::commands::OPEN_BUILT_IN, |ui| {
+    frame::scrolling_menu(ui, text::commands::OPEN_BUILT_IN, |ui| {
         for name in synthetic::NAMES {
             if ui.button(name).clicked() {
                 menu.commands.push(Command::Open(format!("builtin:{name}").into()));
@@ -196,7 +196,7 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     item(ui, menu, Command::FrameAll, true);
     item(ui, menu, Command::TurnObject(ObjectTurn::Over), true);
     item(ui, menu, Command::TurnRound, true);
-    ui.menu_button(text::menu::LOOK_FROM, |ui| {
+    frame::scrolling_menu(ui, text::menu::LOOK_FROM, |ui| {
         for view in StandardView::ALL {
             let command = Command::LookFrom(view);
             let button = Button::new(view.name(menu.settings.camera.up))
@@ -206,7 +206,7 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
             }
         }
     });
-    ui.menu_button(text::menu::KEPT, |ui| {
+    frame::scrolling_menu(ui, text::menu::KEPT, |ui| {
         item(ui, menu, Command::KeepView, true);
         item(ui, menu, Command::KeepInStrip, true);
         item(ui, menu, Command::ExportKept, !menu.settings.kept.is_empty());
@@ -251,18 +251,18 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
         }
     }
     ui.separator();
-    ui.menu_button(text::menu::WHILE_MOVING, |ui| {
+    frame::scrolling_menu(ui, text::menu::WHILE_MOVING, |ui| {
         for (choice, name) in FRAME_MS {
             ui.radio_value(menu.frame_ms, choice, name);
         }
     });
     ui.separator();
-    ui.menu_button(text::menu::SIZE, |ui| {
+    frame::scrolling_menu(ui, text::menu::SIZE, |ui| {
         for by in [1, -1, 0] {
             item(ui, menu, Command::Scale(by), true);
         }
     });
-    ui.menu_button(text::menu::THEME, |ui| {
+    frame::scrolling_menu(ui, text::menu::THEME, |ui| {
         let mut theme = ui.ctx().options(|options| options.theme_preference);
         for (choice, name) in [
             (ThemePreference::Dark, text::menu::DARK),
@@ -288,7 +288,7 @@ const FRAME_MS: [(Option<f64>, &str); 5] = [
 fn light(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     let room = menu.settings.lights.len() < MAX_LIGHTS;
     item(ui, menu, Command::AddLight, room);
-    ui.menu_button(text::menu::USE_RIG, |ui| {
+    frame::scrolling_menu(ui, text::menu::USE_RIG, |ui| {
         for rig in Rig::ALL {
             if ui.button(rig.name()).clicked() {
                 menu.commands.push(Command::UseRig(rig));

@@ -3,15 +3,18 @@
 //! With `CHIAROSCURO_STATUS=PATH` in the environment this small JSON file is rewritten whenever it
 //! changes: `{"state": "idle" | "refining" | "loading", "viewport": {"x", "y", "width", "height"},
 //! "light_handles": [{"x", "y"}, …], "light_rebuilds": n, "longest_ui_ms": n, "response_ms":
-//! {"count": n, "mean": n, "worst": n}, "errors": […]}`. A response is from the frame that reads an input to the
-//! one that shows its effect, preview or not.
+//! {"count": n, "mean": n, "worst": n}, "errors": […], "path_window": TITLE | null, "places": {NAME: {"x", "y", "width",
+//! "height"}, …}}`. A response is from the frame that reads an input to the
+//! one that shows its effect, preview or not. The path window is that in which a path is typed; places are sections of the
+//! side panel by their titles, their rows as `Data/Spacing`, and the drawings above as `Go to Data`.
 //! Lengths are physical pixels from the window's inner top left. `idle` means that the full-quality picture of the
 //! current settings is on screen, and that their balance will not change by itself.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use eframe::egui::Pos2;
-use serde_json::{Value, json};
+use eframe::egui::{Pos2, Rect};
+use serde_json::{Map, Value, json};
 
 use crate::app::viewport::Response;
 use crate::app::viewport::canvas::Canvas;
@@ -38,6 +41,10 @@ pub(crate) struct State<'a> {
     pub response: Response,
     /// Errors so far.
     pub errors: &'a [String],
+    /// Title of the window in which a path is typed, if it is open.
+    pub path_window: Option<&'static str>,
+    /// Where things of the side panel are, in points.
+    pub places: BTreeMap<String, Rect>,
     /// Physical pixels per point.
     pub pixels_per_point: f32,
 }
@@ -58,6 +65,12 @@ impl State<'_> {
         } else {
             "refining"
         };
+        let area = |area: &Rect| {
+            let [x, y, width, height] = [area.min.x, area.min.y, area.width(), area.height()].map(pixels);
+            json!({"x": x, "y": y, "width": width, "height": height})
+        };
+        let places: Map<String, Value> =
+            self.places.iter().map(|(name, place)| (name.clone(), area(place))).collect();
         json!({
             "state": state,
             "viewport": viewport,
@@ -70,6 +83,8 @@ impl State<'_> {
                 "worst": self.response.worst_ms.round(),
             },
             "errors": self.errors,
+            "path_window": self.path_window,
+            "places": places,
         })
     }
 }
@@ -85,6 +100,11 @@ impl StatusFile {
     /// The file named in the environment.
     pub(crate) fn from_environment() -> Self {
         Self { path: std::env::var_os(VARIABLE).map(PathBuf::from), written: String::new() }
+    }
+
+    /// Whether somebody watches.
+    pub(crate) fn is_on(&self) -> bool {
+        self.path.is_some()
     }
 
     /// Rewrites the file if anything changed.

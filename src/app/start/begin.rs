@@ -6,6 +6,7 @@ use super::carried::Legacy;
 use super::error::AppError;
 use super::options::Options;
 use crate::app::common::give_up::GiveUp;
+use crate::app::common::input_pacing::InputPacing;
 use crate::app::common::theme;
 use crate::app::kept::Strip;
 use crate::app::layout::Layout;
@@ -123,6 +124,7 @@ impl App {
         let window_context = Context::new(&paint.adapter, paint.device, paint.queue)?;
         let context = window_context.sibling()?;
         theme::apply(&cc.egui_ctx);
+        cc.egui_ctx.add_plugin(InputPacing::default());
         let layout = Layout::kept(cc.storage);
         layout.apply(&cc.egui_ctx);
         Ok(Self {
@@ -196,6 +198,7 @@ impl App {
     /// Does to the window what `--fault` asks for.
     pub(in crate::app) fn fail_on_purpose(&self) {
         may_panic(Place::Window);
+        std::thread::sleep(fault::frame_delay());
         let frame = FRAMES.next();
         if fault::is_on(Fault::Lost(frame)) {
             self.window_context.lose();

@@ -5,6 +5,7 @@ use eframe::egui::{self, DragValue, Slider, Ui};
 use super::super::panels::controls::color;
 use super::super::text;
 use super::super::text::common::DEGREES;
+use crate::app::common::frame;
 use crate::app::common::volume_facts::decimals;
 use crate::data::ValueRange;
 use crate::model::{
@@ -78,7 +79,7 @@ pub(super) fn points(
 
 /// Lightness, chroma and hue, for colours that are to be as light or as colourful as others.
 fn perceived(ui: &mut Ui, srgb: &mut [f32; 3]) {
-    let menu = ui.menu_button(text::transfer::AS_SEEN.name, |ui| {
+    let menu = frame::scrolling_menu(ui, text::transfer::AS_SEEN.name, |ui| {
         let linear = srgb.map(|c| linear_from_srgb(f64::from(c)));
         let mut lch = lch_from_lab(oklab_from_linear(linear));
         let mut changed = false;
@@ -106,7 +107,7 @@ fn perceived(ui: &mut Ui, srgb: &mut [f32; 3]) {
 
 fn way(ui: &mut Ui, easing: &mut Easing) {
     let name = WAYS.iter().find(|(way, _)| way == easing).map_or("", |(_, name)| name);
-    let menu = ui.menu_button(name, |ui| {
+    let menu = frame::scrolling_menu(ui, name, |ui| {
         for (way, name) in WAYS {
             if ui.selectable_label(*easing == way, name).clicked() {
                 *easing = way;

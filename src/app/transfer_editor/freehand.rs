@@ -1,6 +1,6 @@
 //! Drawing a curve by hand.
 
-use eframe::egui::{self, CursorIcon, Key, Modifiers, Response, Stroke, Ui};
+use eframe::egui::{self, CursorIcon, Event, Key, Modifiers, Pos2, Response, Stroke, Ui};
 
 use super::plot::{self, Axes};
 use super::theme;
@@ -15,6 +15,12 @@ pub(super) struct Freehand {
     stroke: Vec<[f64; 2]>,
     /// The curve before.
     before: Option<TransferFunction>,
+}
+
+/// Places to which the pointer went in this frame, in points of the window.
+fn passed(ui: &Ui) -> Vec<Pos2> {
+    let to = |event: &Event| if let Event::PointerMoved(to) = event { Some(*to) } else { None };
+    ui.input(|input| input.events.iter().filter_map(to).collect())
 }
 
 impl Freehand {
@@ -57,9 +63,12 @@ impl Freehand {
             self.stroke.extend(origin.map(|(value, opacity)| [value, opacity]));
         }
         if let (Some(before), Some(at)) = (&self.before, response.interact_pointer_pos()) {
-            let (value, opacity) = axes.values(at);
-            if self.stroke.last() != Some(&[value, opacity]) {
-                self.stroke.push([value, opacity]);
+            // All the places that the hand has passed, of which a slow frame has many.
+            for at in passed(ui).into_iter().chain([at]) {
+                let (value, opacity) = axes.values(at);
+                if self.stroke.last() != Some(&[value, opacity]) {
+                    self.stroke.push([value, opacity]);
+                }
             }
             *function = before.with_stroke(&self.stroke, axes.range.span());
             let way: Vec<_> =

@@ -5,18 +5,45 @@ use eframe::egui::{self, Color32, DragValue, Mesh, Rect, Response, Sense, Ui, ve
 use super::super::text::{self, Named};
 use super::zoom::ShownValues;
 use crate::app::common::commands::Command;
-use crate::app::common::reveal;
-use crate::app::common::theme;
 use crate::app::common::volume_facts::{VolumeFacts, decimals};
-use crate::data::ValueRange;
-use crate::model::{COLOR_MAPS, ColorMap, ControlPoint, Easing, Mixing, TransferFunction};
+use crate::app::common::{frame, reveal, theme};
+use crate::data::{DataKind, ValueRange};
+use crate::model::{COLOR_MAPS, ColorMap, ControlPoint, Easing, Mixing, PRESETS, TransferFunction};
 
 /// Size of the strip that shows a colour map.
 const STRIP: egui::Vec2 = vec2(96.0, 14.0);
 
+/// Presets, by domain; dim where they are for another kind of data.
+pub(super) fn presets(ui: &mut Ui, kind: &DataKind, commands: &mut Vec<Command>) {
+    frame::scrolling_menu(ui, text::transfer::PRESETS, |ui| {
+        let all = ui.button(&*Command::TryPresets.label()).on_hover_text(text::transfer::TRY_PRESETS_TIP);
+        if all.clicked() {
+            commands.push(Command::TryPresets);
+        }
+        ui.separator();
+        let mut domain = "";
+        // The one of the benchmarks is for the command line.
+        for preset in PRESETS.into_iter().filter(|preset| preset.domain() != "bench") {
+            if preset.domain() != domain {
+                domain = preset.domain();
+                ui.weak(preset.domain_titles()[1]);
+            }
+            let (title, about) = (preset.title(), preset.about());
+            let (title, about) = if preset.suits(kind) {
+                (RichText::new(title), about)
+            } else {
+                (RichText::new(title).weak(), format!("{about}. {}", text::transfer::FOR_CT))
+            };
+            if ui.button(title).on_hover_text(about).clicked() {
+                commands.push(Command::UsePreset(preset));
+            }
+        }
+    });
+}
+
 /// Colour maps, with their colours.
 pub(super) fn colors(ui: &mut Ui, function: &mut TransferFunction, commands: &mut Vec<Command>) {
-    ui.menu_button(text::transfer::COLORS, |ui| {
+    frame::scrolling_menu(ui, text::transfer::COLORS, |ui| {
         for (at, map) in COLOR_MAPS.iter().enumerate() {
             ui.horizontal(|ui| {
                 strip(ui, map);
@@ -118,7 +145,7 @@ pub(super) fn whole_curve(ui: &mut Ui, function: &mut TransferFunction, range: V
 
 /// What changes the shape of the curve. `shown`: the values that the plot shows.
 pub(super) fn shapes(ui: &mut Ui, function: &mut TransferFunction, volume: &VolumeFacts, shown: ShownValues) {
-    ui.menu_button(text::transfer::SHAPE, |ui| {
+    frame::scrolling_menu(ui, text::transfer::SHAPE, |ui| {
         let clicked = |ui: &mut Ui, named: Named| ui.button(named.name).on_hover_text(named.tip).clicked();
         if clicked(ui, text::transfer::FIT) {
             fit(function, volume);

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use eframe::egui::{self, DragValue, Key, Ui};
 
-use crate::app::common::frame;
+use crate::app::common::{frame, shortcuts};
 use crate::app::text;
 use crate::app::worker::loader::Reading;
 use crate::app::worker::weighing::{Fit, Weighed};
@@ -159,6 +159,7 @@ impl Roomy {
     /// Shows the window, if it is open. Gives what the user answered; it is closed then.
     pub(crate) fn ui(&mut self, ctx: &egui::Context) -> Option<Answer> {
         let asked = self.asked.as_mut()?;
+        shortcuts::reserve_letters(ctx);
         let (mut open, mut answer) = (true, None);
         let window = egui::Window::new(text::roomy::TITLE).open(&mut open);
         window

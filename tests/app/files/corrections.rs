@@ -9,7 +9,10 @@ use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{click, drag, picture, wait_until, wait_until_idle, window_with};
+use crate::harness::{
+    click, drag, in_one_frame, keys_of, picture, slow_window, stroke, wait_until, wait_until_idle,
+    window_with,
+};
 
 fn settings(harness: &Harness<'_, App>) -> Settings {
     harness.state().settings().clone()
@@ -45,6 +48,25 @@ fn unfold(harness: &mut Harness<'_, App>) {
     }
     harness.get_by_label("All as in the file").scroll_to_me();
     harness.run_steps(8);
+}
+
+/// Each number goes into the field in which it was typed, and none is a command, however slow frames are.
+#[test]
+fn numbers_are_typed_with_tab_within_a_frame() {
+    let mut harness = slow_window(Vec2::new(760.0, 1600.0));
+    unfold(&mut harness);
+    let before = settings(&harness);
+    click(&mut harness, "Spacing along x");
+    let [tab, enter] = [Key::Tab, Key::Enter].map(|key| stroke(key, Modifiers::NONE).to_vec());
+    let [first, last] = ["0.957", "1.5"].map(keys_of);
+    in_one_frame(&mut harness, [first.clone(), tab.clone(), first, tab, last, enter].concat());
+    wait_until_idle(&mut harness);
+    let after = settings(&harness);
+    assert_eq!(after.volume.spacing, Some([0.957, 0.957, 1.5]));
+    // No digit has chosen a view.
+    assert_eq!(after.camera.azimuth_deg, before.camera.azimuth_deg);
+    assert_eq!(after.camera.elevation_deg, before.camera.elevation_deg);
+    assert_eq!(after.camera.projection, before.camera.projection);
 }
 
 #[test]

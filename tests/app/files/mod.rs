@@ -8,3 +8,4 @@ mod opening;
 pub(crate) mod raw_import;
 mod roomy;
 mod sessions;
+mod typed_paths;

@@ -2,7 +2,7 @@
 
 mod labels;
 mod layout;
-mod presets;
+mod menus;
 mod side;
 mod slices;
 mod surroundings;

@@ -6,7 +6,7 @@ use eframe::egui::{Event, Key, Modifiers, Rect, Role, Vec2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{SCENE, drag, wait_until_idle, window_with};
+use crate::harness::{SCENE, drag, slow_window, wait_until_idle, window_with};
 use crate::names::unfolded;
 
 /// A window whose first look is changed.
@@ -86,6 +86,50 @@ fn drawings_lead_to_sections() {
         assert!(row.top() > 0.0 && row.bottom() < 600.0, "{section}: {row:?}");
     }
     wait_until_idle(&mut harness);
+}
+
+/// The title of a section is at the top of the panel when its drawing has led there, or the panel is at its end, however
+/// slow frames are, and whether the section was open or not.
+#[test]
+fn drawings_lead_to_the_titles_of_sections() {
+    let mut harness = slow_window(Vec2::new(760.0, 600.0));
+    let sections = [
+        "Data",
+        "Shading",
+        "Lights",
+        "Camera",
+        "Sky and scattering",
+        "Clipping",
+        "Compare",
+        "Shadows",
+        "Floor",
+    ];
+    for again in [false, true] {
+        for section in sections {
+            let drawing = harness.get_by_label(&format!("Go to {section}")).rect();
+            harness.get_by_label(&format!("Go to {section}")).click();
+            harness.run_steps(14);
+            let panel = picture_of(&harness).right();
+            let mut titles = harness.get_all_by_label(section).map(|node| node.rect());
+            let title = titles.find(|rect| rect.left() >= panel).expect("a title in the panel");
+            let below = title.top() - drawing.bottom();
+            let is_at_end = end_of_panel(&harness) <= 600.0;
+            assert!(
+                (0.0..24.0).contains(&below) || below > 0.0 && is_at_end,
+                "{section} ({again}): {title:?}"
+            );
+        }
+    }
+    wait_until_idle(&mut harness);
+}
+
+/// Where the last section ends, in points of the window.
+fn end_of_panel(harness: &Harness<'_, App>) -> f32 {
+    harness
+        .get_by_label("Data")
+        .rect()
+        .bottom()
+        .max(harness.query_by_label("Corrections").map_or(0.0, |row| row.rect().bottom()))
 }
 
 /// Steps back and forward say what they change.

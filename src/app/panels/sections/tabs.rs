@@ -19,6 +19,7 @@ pub(in crate::app::panels) fn show(ui: &mut Ui, is_active: impl Fn(&str) -> bool
         for title in ALL {
             let (area, response) = ui.allocate_exact_size(size, Sense::click());
             response.widget_info(|| WidgetInfo::labeled(Role::Button, true, text::sections::go_to(title)));
+            reveal::report(ui.ctx(), area, || text::sections::go_to(title));
             let visuals = *ui.style().interact(&response);
             if response.hovered() || response.has_focus() {
                 ui.painter().rect(

@@ -59,6 +59,9 @@ pub(crate) const EXPORT_LIGHT: Question = Question {
     verb: "Export",
 };
 
+/// Where a file is asked for while the desktop's dialog is open for another.
+pub(crate) const DIALOG_IS_OPEN: &str = "A file dialog is open already; close that one first";
+
 /// Before a file is replaced.
 pub(crate) const REPLACE: &str = "Replace";
 

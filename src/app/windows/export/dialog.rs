@@ -6,7 +6,8 @@ use std::sync::atomic::Ordering;
 use eframe::egui::{self, Ui};
 
 use super::{Export, Kind, Request, destination};
-use crate::app::common::dock::Tool;
+use crate::app::common::dock::{self, Tool};
+use crate::app::common::shortcuts;
 use crate::app::text::{self, Named};
 use crate::export::{AnimationFormat, PictureFormat, frame_names};
 use crate::model::{Depth, MAX_EDGE, MAX_SAMPLES, Marks};
@@ -41,6 +42,9 @@ impl Export {
         let mut request = None;
         let mut open = self.open;
         let tool = Tool { title: text::export::TITLE, default_pos: [160.0, 90.0], default_width: 440.0 };
+        if open && !dock::docked(ctx).contains(tool.title) {
+            shortcuts::reserve_letters(ctx);
+        }
         tool.show(ctx, &mut open, |ui| {
             ui.horizontal(|ui| {
                 for (kind, Named { name, tip }) in KINDS {

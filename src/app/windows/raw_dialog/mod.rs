@@ -12,7 +12,7 @@ use eframe::egui::{self, Key, Modifiers};
 use self::form::Form;
 use self::looking::Looking;
 use self::pictures::Pictures;
-use crate::app::common::frame;
+use crate::app::common::{frame, shortcuts};
 use crate::app::text;
 use crate::data::load::raw::Proposal;
 use crate::data::load::{RawGuess, RawLayout};
@@ -91,6 +91,7 @@ impl RawDialog {
     pub(crate) fn ui(&mut self, ctx: &egui::Context) -> Option<Described> {
         let asked = self.asked.as_mut()?;
         asked.take_proposals();
+        shortcuts::reserve_letters(ctx);
         let mut open = true;
         let mut answer = None;
         let window = egui::Window::new(text::raw::TITLE).open(&mut open).collapsible(false).resizable(false);

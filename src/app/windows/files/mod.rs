@@ -1,18 +1,19 @@
 //! Files: dialogs on threads, the window for typing a path, dropped files, settings.
 
+mod desktop;
+mod dialog;
+
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
 use eframe::egui;
 
-use crate::app::common::frame;
+use self::dialog::{Answer, Dialog};
+use crate::app::common::{frame, shortcuts};
 use crate::app::text;
 use crate::app::text::files::Question;
-use crate::app::worker::task::Work;
-use crate::data::load::endings;
 use crate::data::{ValueRange, ValueRanges, read_small};
 use crate::export::may_carry_record;
-use crate::model::{EXPORTED, IMPORTED, Record, Settings, TransferFunction, export, import};
+use crate::model::{Record, Settings, TransferFunction, export, import};
 
 /// What a dialog is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -68,16 +69,6 @@ impl Purpose {
     }
 }
 
-/// A dialog that closes sooner than this was never open: there is no desktop portal.
-const NO_DIALOG: Duration = Duration::from_millis(400);
-
-#[derive(Debug)]
-struct Dialog {
-    purpose: Purpose,
-    started: Instant,
-    work: Work<Option<PathBuf>>,
-}
-
 /// The typed-path window.
 #[derive(Debug)]
 struct Typed {
@@ -93,61 +84,25 @@ struct Typed {
 pub(crate) struct Files {
     dialog: Option<Dialog>,
     typed: Option<Typed>,
+    /// A file was asked for while the desktop's dialog was open for another, and nobody has been told.
+    refused: bool,
 }
 
 impl Files {
     /// Opens the desktop's file dialog; without one, the window for typing a path.
     pub(crate) fn ask(&mut self, purpose: Purpose, frame: &eframe::Frame, ctx: &egui::Context) {
-        if self.dialog.is_some() {
+        if let Some(dialog) = &self.dialog {
+            if dialog.may_be_open() {
+                self.refused = true;
+                ctx.request_repaint();
+            } else {
+                // Whatever became of that one, nobody has seen it.
+                self.type_path(purpose);
+            }
             return;
         }
-        let dialog = rfd::AsyncFileDialog::new().set_title(purpose.question().title).set_parent(frame);
-        type Pending = std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>>;
-        let pending: Pending = match purpose {
-            Purpose::OpenVolume | Purpose::VolumeOfLook => {
-                // Filters know what follows the last dot.
-                let filters: Vec<&str> =
-                    endings().into_iter().filter_map(|ending| ending.rsplit('.').next()).collect();
-                let dialog = dialog.add_filter(text::files::VOLUMES, &filters);
-                Box::pin(dialog.add_filter(text::files::ALL_FILES, &["*"]).pick_file())
-            }
-            Purpose::OpenFolder => Box::pin(dialog.pick_folder()),
-            Purpose::LoadSettings | Purpose::CompareSettings => {
-                let endings = ["json", "png", "exr", "gif", "mp4"];
-                Box::pin(dialog.add_filter(text::files::SETTINGS_AND_PICTURES, &endings).pick_file())
-            }
-            Purpose::Surroundings => {
-                let endings = ["hdr", "exr", "png", "jpg", "jpeg"];
-                Box::pin(dialog.add_filter(text::files::PANORAMAS, &endings).pick_file())
-            }
-            Purpose::ImportTransfer => {
-                Box::pin(dialog.add_filter(text::files::TRANSFER_FUNCTIONS, &IMPORTED).pick_file())
-            }
-            Purpose::ExportTransfer => {
-                let dialog = dialog.add_filter(text::files::TRANSFER_FUNCTIONS, &EXPORTED);
-                Box::pin(dialog.set_file_name("colors.json").save_file())
-            }
-            Purpose::SaveSettings => {
-                let dialog = dialog.add_filter(text::files::SETTINGS, &["json"]);
-                Box::pin(dialog.set_file_name("settings.json").save_file())
-            }
-            Purpose::ExportPicture => {
-                let dialog = dialog.add_filter(text::files::PICTURES, &["png", "exr", "gif", "mp4"]);
-                Box::pin(dialog.set_file_name("picture.png").save_file())
-            }
-            Purpose::ExportKept => {
-                let dialog = dialog.add_filter(text::files::PICTURES, &["png"]);
-                Box::pin(dialog.set_file_name("contact-sheet.png").save_file())
-            }
-            Purpose::ExportLight => {
-                let dialog = dialog.add_filter(text::files::LIGHT_VOLUME, &["nrrd"]);
-                let dialog = dialog.add_filter(text::files::SLICE, &["png"]);
-                Box::pin(dialog.set_file_name("light.nrrd").save_file())
-            }
-        };
-        let task = move || pollster::block_on(pending).map(|file| file.path().to_owned());
-        match Work::start("file-dialog", ctx, task) {
-            Ok(work) => self.dialog = Some(Dialog { purpose, started: Instant::now(), work }),
+        match Dialog::open(purpose, frame, ctx) {
+            Ok(dialog) => self.dialog = Some(dialog),
             Err(err) => {
                 log::warn!("no file dialog: {err}");
                 self.type_path(purpose);
@@ -157,30 +112,42 @@ impl Files {
 
     /// Opens the window for typing a path.
     pub(crate) fn type_path(&mut self, purpose: Purpose) {
-        self.typed = Some(Typed { purpose, text: String::new(), focus: true, asks: false });
+        let before = self.typed.take().filter(|typed| typed.purpose == purpose);
+        let text = before.map(|typed| typed.text).unwrap_or_default();
+        self.typed = Some(Typed { purpose, text, focus: true, asks: false });
     }
 
-    /// What the user chose, once.
-    pub(crate) fn take(&mut self) -> Option<(Purpose, PathBuf)> {
-        let dialog = self.dialog.as_ref()?;
-        let chosen = dialog.work.take()?;
-        let (purpose, quick) = (dialog.purpose, dialog.started.elapsed() < NO_DIALOG);
+    /// Title of the window for typing a path, if it is open.
+    pub(crate) fn path_window(&self) -> Option<&'static str> {
+        self.typed.as_ref().map(|typed| typed.purpose.question().title)
+    }
+
+    /// What the user chose, once. To be called in each frame.
+    pub(crate) fn take(&mut self, ctx: &egui::Context) -> Option<(Purpose, PathBuf)> {
+        let dialog = self.dialog.as_mut()?;
+        dialog.watch(ctx);
+        let answer = dialog.answer()?;
+        let purpose = dialog.purpose;
         self.dialog = None;
-        match chosen {
-            Ok(Some(path)) => return Some((purpose, path)),
-            Ok(None) if !quick => {}
-            Ok(None) => self.type_path(purpose),
-            Err(panic) => {
-                log::warn!("the file dialog failed: {panic}");
-                self.type_path(purpose);
-            }
+        match answer {
+            Answer::Chosen(path) => return Some((purpose, path)),
+            Answer::Cancelled => {}
+            // Whoever types a path already has given up on that dialog.
+            Answer::NoDialog if self.typed.is_some() => {}
+            Answer::NoDialog => self.type_path(purpose),
         }
         None
+    }
+
+    /// Whether a file was asked for while the desktop's dialog was open for another, once.
+    pub(crate) fn take_refusal(&mut self) -> bool {
+        std::mem::take(&mut self.refused)
     }
 
     /// Shows the window for typing a path, if it is open. Gives what was typed.
     pub(crate) fn ui(&mut self, ctx: &egui::Context) -> Option<(Purpose, PathBuf)> {
         let typed = self.typed.as_mut()?;
+        shortcuts::reserve_letters(ctx);
         let (mut open, mut accepted, mut cancelled) = (true, false, false);
         let Question { title, hint, verb } = typed.purpose.question();
         let window = egui::Window::new(title).id(egui::Id::unique("typed path")).open(&mut open);

@@ -1,0 +1,144 @@
+# shellcheck shell=bash disable=SC2034,SC2154 # what is set here is used by scripts, and the other way round
+# What hands do while a slow frame is drawn, in a real window: flicks of handles, paths and numbers that are typed, and
+# drawings that lead to sections. For script/faults, which counts what was tried and what went well.
+
+# go KEYS…: what xdotool does in one go, quicker than the window draws a frame.
+go() {
+    xdotool windowfocus "$window"
+    xdotool "$@"
+}
+
+# place NAME: sets x, y, across and down (in the window) to where a thing of the side panel is.
+place() {
+    x=0 y=0 across=0 down=0
+    read -r x y across down < <(look ".places[\"$1\"] // empty | [.x, .y, .width, .height] | join(\" \")") || true
+}
+
+# must_rest NAME: waits until that place is there, and the same for two seconds; then as `place`.
+must_rest() {
+    local deadline=$((SECONDS + 30)) quiet=0 before='' now
+    while [ "$quiet" -lt 8 ]; do
+        [ "$SECONDS" -lt "$deadline" ] || { say "$1 is not there, or moves: $now"; break; }
+        now=$(look ".places[\"$1\"] // empty | tostring")
+        if [ -n "$now" ] && [ "$now" = "$before" ]; then quiet=$((quiet + 1)); else quiet=0; fi
+        before=$now
+        sleep 0.25
+    done
+    place "$1"
+}
+
+asks_for_path() { [ "$(look .path_window)" = "$1" ]; }
+has_kept() { [ "$(kept "$1")" = "$2" ]; }
+has_changed() { [ "$(kept "$1")" != "$2" ]; }
+is_written() { jq -e . "$1" >/dev/null 2>&1; }
+
+# A light's handle that is grabbed and thrown within a frame; the camera stays where it is.
+slow_flicks() {
+    local by handle camera lights
+    for by in '-40 25' '35 -20' '-25 -30'; do
+        tried=$((tried + 1))
+        must_settle "before a light is flicked"
+        sleep 2
+        camera=$(kept .camera) lights=$(kept .lights)
+        read -r -a handle < <(look '.light_handles[0] // empty | [.x, .y] | join(" ")') ||
+            abort "the status tells where a light's handle is"
+        handle=($((handle[0] + window_x)) $((handle[1] + window_y)))
+        # shellcheck disable=SC2086 # two numbers
+        set -- $by
+        go mousemove "${handle[@]}" sleep 0.8 mousedown 1 mousemove_relative -- "$1" "$2" \
+            mousemove_relative -- "$1" "$2" mousemove_relative -- "$1" "$2" mouseup 1
+        if await 20 has_changed .lights "$lights" && has_kept .camera "$camera"; then
+            well=$((well + 1))
+        else
+            say "a flick by $by moved $(has_kept .camera "$camera" && echo nothing || echo the camera)"
+        fi
+    done
+}
+
+# Three numbers with Tab between them, as quick as a keyboard can be.
+slow_typing() {
+    local camera
+    tried=$((tried + 1))
+    camera=$(kept '[.camera.azimuth_deg, .camera.elevation_deg, .camera.projection]')
+    go key ctrl+p type --delay 4 Spacing
+    xdotool key Return
+    # Another row is called like that, above those that correct the file.
+    must_rest Data/Unit
+    place Data/Spacing
+    # Fields stand behind the label, which is 106 points wide.
+    go mousemove $((window_x + x + 106 + 25)) $((window_y + y + down / 2)) click 1 \
+        type --delay 4 0.957
+    xdotool key Tab type --delay 4 0.957
+    xdotool key Tab type --delay 4 1.5
+    xdotool key Return
+    if await 30 has_kept .volume.spacing '[0.957,0.957,1.5]' &&
+        has_kept '[.camera.azimuth_deg, .camera.elevation_deg, .camera.projection]' "$camera"; then
+        well=$((well + 1))
+    else
+        say "spacing $(kept .volume.spacing), camera $camera, then $(kept .camera)"
+    fi
+    must_settle "after the spacing was typed"
+}
+
+# There is no desktop portal here, and a path can be typed each time.
+slow_dialogs() {
+    local at key title saved=$out/slow.json
+    for at in 1 2 3 4 5; do
+        for key in s o; do
+            tried=$((tried + 1))
+            title='Open volume'
+            [ "$key" = o ] || title='Save session'
+            go key "ctrl+$key"
+            if await 10 asks_for_path "$title"; then well=$((well + 1)); else say "Ctrl+$key, time $at: nothing"; fi
+            go key Escape
+            await 10 asks_for_path null || true
+        done
+    done
+    tried=$((tried + 1))
+    go key ctrl+s type --delay 4 "$saved"
+    xdotool key Return
+    if await 20 is_written "$saved"; then well=$((well + 1)); else say "a session was not saved"; fi
+}
+
+# The drawings above the panel lead to the titles of sections: to the top, or as far as the panel goes.
+slow_sections() {
+    local title below end
+    for title in Data Shading Lights Camera 'Sky and scattering' Clipping Shadows Floor; do
+        tried=$((tried + 1))
+        place "Go to $title"
+        go mousemove $((window_x + x + across / 2)) $((window_y + y + down / 2)) click 1
+        below=$((y + down))
+        sleep 1
+        must_rest "$title"
+        end=$(look '[.places | to_entries[] | select(.key | startswith("Data")) | .value.y + .value.height] | max')
+        if [ $((y - below)) -ge 0 ] && { [ $((y - below)) -le 24 ] || [ "$end" -lt "$window_height" ]; }; then
+            well=$((well + 1))
+        else
+            say "$title: its title is $((y - below)) points below the drawings"
+        fi
+        import -window root "$out/section-${title%% *}.png" 2>/dev/null || true
+    done
+}
+
+# What hands do within a frame of 300 ms, as software drivers and remote desktops have them, is not lost.
+slow_frames() {
+    local well=0 tried=0 x y across down
+    rm -rf "$XDG_DATA_HOME/chiaroscuro"
+    # A program that shows dialogs where no portal does would show one: it is there, and cannot.
+    mkdir -p "$out/no-dialog"
+    printf '#!/bin/sh\nexit 1\n' >"$out/no-dialog/zenity"
+    chmod +x "$out/no-dialog/zenity"
+    ! has zenity || local -x PATH=$out/no-dialog:$PATH
+    launch "$volume" --fault slow-frames:300
+    await 60 find_window || abort "a window opens within 60 s"
+    must_settle "with slow frames"
+    geometry
+    slow_flicks
+    slow_dialogs
+    slow_typing
+    slow_sections
+    ! panicked && running || well=0
+    keep slow-frames
+    end
+    row "what comes within slow frames" "$tried" "$well" "frames of 300 ms"
+}
