@@ -7,7 +7,7 @@ use eframe::egui::{Color32, FontId, TextStyle, Ui};
 const ELLIPSIS: char = '…';
 
 /// Points that words take in one line.
-pub(in crate::app) fn text_width(ui: &Ui, words: &str, style: TextStyle) -> f32 {
+pub(in crate::app) fn text_width(ui: &Ui, words: &str, style: &TextStyle) -> f32 {
     width_of(ui, words, style.resolve(ui.style()))
 }
 
@@ -16,7 +16,7 @@ fn width_of(ui: &Ui, words: &str, font: FontId) -> f32 {
 }
 
 /// A name as it fits into a width: whole, or without as many letters of its middle as must go.
-pub(in crate::app) fn elide_middle(ui: &Ui, name: &str, style: TextStyle, width: f32) -> String {
+pub(in crate::app) fn elide_middle(ui: &Ui, name: &str, style: &TextStyle, width: f32) -> String {
     let font = style.resolve(ui.style());
     elide_by(name, |words| width_of(ui, words, font.clone()) <= width)
 }
@@ -30,8 +30,7 @@ fn elide_by(name: &str, fits: impl Fn(&str) -> bool) -> String {
     let without_middle = |count: usize| {
         let head = &letters[..count.div_ceil(2)];
         let tail = &letters[letters.len() - count / 2..];
-        let whole: String = head.iter().chain([&ELLIPSIS]).chain(tail).collect();
-        whole
+        head.iter().chain([&ELLIPSIS]).chain(tail).collect::<String>()
     };
     // Between these numbers of letters is the largest that fits.
     let (mut least, mut most) = (0, letters.len().saturating_sub(1));

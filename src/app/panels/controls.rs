@@ -50,7 +50,7 @@ impl Number {
         let Self { named, range, unit, log, decimals } = self;
         row(ui, named, |ui| {
             let spacing = ui.spacing().item_spacing.x;
-            let typed = text_width(ui, &format!("{value:.decimals$}{unit}"), BUTTON);
+            let typed = text_width(ui, &format!("{value:.decimals$}{unit}"), &BUTTON);
             let width = theme::VALUE_WIDTH.max(typed + 2.0 * ui.spacing().button_padding.x);
             let room = room(ui) - width - theme::RESET_WIDTH - 3.0 * spacing;
             ui.spacing_mut().slider_width = room.max(30.0);
@@ -210,7 +210,8 @@ pub(super) fn choice_with<T: PartialEq + Copy>(
             ui.spacing_mut().button_padding.x *= 0.7;
         }
         let padding = 2.0 * ui.spacing().button_padding.x + ui.spacing().item_spacing.x;
-        let needed: f32 = options.iter().map(|(_, named)| text_width(ui, named.name, BUTTON) + padding).sum();
+        let needed: f32 =
+            options.iter().map(|(_, named)| text_width(ui, named.name, &BUTTON) + padding).sum();
         let chosen = options.iter().find(|(option, _)| *option == *value);
         let shown = chosen.map_or("", |(_, of_option)| of_option.name);
         let mut changed = false;

@@ -82,7 +82,7 @@ fn head(ui: &mut Ui, light: &mut Light, index: usize, selected: bool) -> bool {
         color(ui, &text::lights::color(index + 1), &mut light.color);
         let whole = if light.name.is_empty() { text::lights::UNNAMED } else { &light.name };
         let room = ui.available_width() - 2.0 * ui.spacing().button_padding.x;
-        let name = egui::RichText::new(elide_middle(ui, whole, egui::TextStyle::Button, room));
+        let name = egui::RichText::new(elide_middle(ui, whole, &egui::TextStyle::Button, room));
         let name = if selected { name.color(theme::accent(ui.visuals())).strong() } else { name };
         let button = ui.add(egui::Button::selectable(selected, name).truncate());
         button.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, selected, whole));

@@ -61,8 +61,8 @@ impl Title {
     /// Shows it in what is left of the bar: the facts are whole, and the middle of a long name is left out.
     fn show(&self, ui: &mut egui::Ui) {
         let facts = text::menu::title("", &self.facts);
-        let room = ui.available_width() - text_width(ui, &facts, egui::TextStyle::Body);
-        let name = elide_middle(ui, &self.name, egui::TextStyle::Body, room);
+        let room = ui.available_width() - text_width(ui, &facts, &egui::TextStyle::Body);
+        let name = elide_middle(ui, &self.name, &egui::TextStyle::Body, room);
         let words = egui::RichText::new(text::menu::title(&name, &self.facts)).weak();
         let label = ui.add(egui::Label::new(words).truncate());
         if name != self.name {
@@ -161,7 +161,7 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
                 let whole = path.to_string_lossy();
                 let name = path.file_name().map(|name| name.to_string_lossy());
                 let name = plain(name.as_ref().unwrap_or(&whole), MAX_NAME);
-                let name = elide_middle(ui, &name, egui::TextStyle::Button, LONGEST_NAME);
+                let name = elide_middle(ui, &name, &egui::TextStyle::Button, LONGEST_NAME);
                 let picture = menu.recent_pictures.get(path, ui.ctx());
                 let button = match &picture {
                     Some(picture) => {
@@ -183,7 +183,7 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     ui.add_enabled_ui(!menu.earlier.is_empty(), |ui| {
         ui.menu_button(text::menu::EARLIER_LOOKS, |ui| {
             for run in menu.earlier {
-                let name = elide_middle(ui, &recovery::name(run), egui::TextStyle::Button, LONGEST_NAME);
+                let name = elide_middle(ui, &recovery::name(run), &egui::TextStyle::Button, LONGEST_NAME);
                 if ui.button(name).on_hover_text(&run.source).clicked() {
                     menu.commands.push(Command::Open(run.look.clone()));
                 }

@@ -51,7 +51,7 @@ pub(crate) fn show(
                 doing(ui, facts.doing, making);
                 if let Some(went) = went {
                     ui.separator();
-                    let words = elide_middle(ui, went, TextStyle::Body, LONGEST_STEP);
+                    let words = elide_middle(ui, went, &TextStyle::Body, LONGEST_STEP);
                     let link = ui.add(egui::Link::new(words));
                     if link.on_hover_text(text::status::WENT_TIP).clicked() {
                         commands.push(Command::ToggleHistory);
@@ -86,7 +86,7 @@ fn progress_of_opening(ui: &mut egui::Ui, opening: &LoadProgress<'_>, commands: 
     };
     let words = text::status::opening(phase, bytes, &plain(&source.to_string_lossy(), LONGEST_PATH));
     let room = ui.available_width() - BUTTONS;
-    let response = ui.label(elide_middle(ui, &words, TextStyle::Body, room));
+    let response = ui.label(elide_middle(ui, &words, &TextStyle::Body, room));
     response.on_hover_text(words);
     if ui.small_button(&*Command::CancelOpening.label()).clicked() {
         commands.push(Command::CancelOpening);

@@ -80,7 +80,7 @@ fn chip(ui: &mut Ui, light: &Light, selected: bool) -> egui::Response {
         (false, true) => theme::EYE_CURVE,
         (false, false) => theme::GUIDE.gamma_multiply(0.6),
     };
-    let shown = elide_middle(ui, name, egui::TextStyle::Button, LONGEST_NAME);
+    let shown = elide_middle(ui, name, &egui::TextStyle::Button, LONGEST_NAME);
     let galley = ui.painter().layout_no_wrap(shown, font, ink);
     let size = vec2(galley.size().x + 30.0, 20.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());

@@ -150,7 +150,8 @@ fn windows_over_the_picture() {
             let window = in_theme(&mut harness, theme);
             // Exporting is docked.
             let docked = Rect::from_min_max(pos2(0.0, 28.0), pos2(DOCK, 420.0));
-            let area = harness.query_by_role(Role::Window).map_or(docked, |window| window.rect());
+            let area =
+                if let Some(window) = harness.query_by_role(Role::Window) { window.rect() } else { docked };
             check(&window, area.shrink(2.0), &format!("{name}-{suffix}"), &mut failures);
         }
         let close = if name == "export" { "Close" } else { "Close window" };

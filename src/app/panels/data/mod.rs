@@ -56,7 +56,7 @@ fn facts(ui: &mut Ui, volume: &VolumeFacts) {
     }
     for (name, fact) in rows {
         row(ui, Named { name, tip: "" }, |ui| {
-            let shown = elide_middle(ui, &fact, egui::TextStyle::Body, ui.available_width());
+            let shown = elide_middle(ui, &fact, &egui::TextStyle::Body, ui.available_width());
             let is_cut = shown != fact;
             let label = ui.add(egui::Label::new(shown).truncate());
             if is_cut {

@@ -42,7 +42,7 @@ pub(crate) fn of(before: &Settings, after: &Settings) -> Option<String> {
         with(*sky != after.sky, "change sky"),
         with(*scattering != after.scattering, "change scattering"),
         with(*cuts != after.cuts, of_cuts(cuts, &after.cuts)),
-        (*floor != after.floor).then(|| switched("floor", floor.on, after.floor.on, "change floor")),
+        (*floor != after.floor).then(|| switched("floor", [floor.on, after.floor.on], "change floor")),
         with(*sampling != after.sampling, "change sampling"),
         with(*output != after.output, of_output(output, &after.output)),
         with(*kept != after.kept, of_kept(kept, &after.kept)),
@@ -83,10 +83,10 @@ fn with_balance(shadows: &Shadows, balance: f64) -> Shadows {
 }
 
 /// A thing that was switched on or off, or else `other` that was done to it.
-fn switched(name: &str, was_on: bool, is_on: bool, other: &str) -> String {
-    match (was_on, is_on) {
-        (false, true) => format!("switch on {name}"),
-        (true, false) => format!("switch off {name}"),
+fn switched(name: &str, was_and_is_on: [bool; 2], other: &str) -> String {
+    match was_and_is_on {
+        [false, true] => format!("switch on {name}"),
+        [true, false] => format!("switch off {name}"),
         _ => other.to_owned(),
     }
 }
@@ -134,7 +134,7 @@ fn of_light(a: &Light, b: &Light) -> String {
     } else if alone(Light { position: b.position, ..a.clone() }) {
         format!("move {name}")
     } else if alone(Light { on: b.on, ..a.clone() }) {
-        switched(name, a.on, b.on, "")
+        switched(name, [a.on, b.on], "")
     } else if alone(Light { intensity: b.intensity, ..a.clone() }) {
         format!("change intensity of {name}")
     } else if alone(Light { color: b.color, ..a.clone() }) {
