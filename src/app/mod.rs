@@ -63,6 +63,7 @@ use self::viewport::light_probe::LightProbe;
 use self::viewport::orbit::Orbit;
 use self::viewport::overlay::Overlay;
 use self::viewport::overlay::ct_looks::CtLooks;
+use self::viewport::overlay::export_marks::ExportMarks;
 use self::viewport::turning::Turning;
 use self::viewport::{Viewport, paint_callback};
 use self::windows::chooser::Chooser;
@@ -129,6 +130,8 @@ pub struct App {
     files: Files,
     session: Option<Session>,
     recovery: Recovery,
+    /// What is opened when nothing is named waits until the user has said whether to reopen the last session.
+    first_waits: bool,
     quit: Quit,
     lost_again: LostAgain,
     /// The session has not been laid over the first look yet.
@@ -140,6 +143,8 @@ pub struct App {
     cut_handles: CutHandles,
     compare: Compare,
     overlay: Overlay,
+    /// What would be written over an exported picture.
+    export_marks: ExportMarks,
     orbit: Orbit,
     turning: Turning,
     probe: LightProbe,
@@ -218,9 +223,12 @@ impl App {
 
     /// Whether the full-quality picture of the current settings is on screen and nothing is being opened or corrected.
     fn is_complete(&self) -> bool {
-        self.loader.progress().is_none()
-            && !self.is_correcting()
-            && self.viewport.is_idle(&self.compare.looks(&self.settings))
+        self.has_its_volume() && self.viewport.is_idle(&self.compare.looks(&self.settings))
+    }
+
+    /// Whether nothing is being opened or corrected.
+    fn has_its_volume(&self) -> bool {
+        self.loader.progress().is_none() && !self.is_correcting()
     }
 
     /// Where the picture is, in points, and its size in physical pixels.
@@ -236,6 +244,11 @@ impl App {
     /// How often light volumes were filled for this volume.
     pub fn light_rebuilds(&self) -> u64 {
         self.viewport.light_rebuilds()
+    }
+
+    /// How often a preview of this volume was followed by its picture at full quality.
+    pub fn refinements(&self) -> u64 {
+        self.viewport.refinements()
     }
 
     /// Name of the open volume.
@@ -268,11 +281,6 @@ impl App {
     /// Whether a picture is being exported.
     pub fn is_exporting(&self) -> bool {
         self.export.is_busy()
-    }
-
-    fn title(&self) -> String {
-        let Some(volume) = &self.volume else { return String::new() };
-        text::menu::title(&volume.name, volume.dims, volume.spacing_mm, volume.has_unknown_scale)
     }
 }
 

@@ -1,12 +1,12 @@
 //! The editor of the transfer function.
 
-use chiaroscuro::app::App;
-use chiaroscuro::model::{Easing, TransferFunction};
+use chiaroscuro::app::{App, Options};
+use chiaroscuro::model::{ControlPoint, Easing, Settings, TransferFunction};
 use eframe::egui::{self, Event, Modifiers, PointerButton, Pos2, Role, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{click, drag, turn_wheel, wait_until_idle, window};
+use crate::harness::{SCENE, click, drag, turn_wheel, wait_until_idle, window, window_with};
 
 #[test]
 fn the_transfer_function_is_edited_in_its_plot() {
@@ -30,6 +30,42 @@ fn the_transfer_function_is_edited_in_its_plot() {
     harness.key_press(egui::Key::Delete);
     harness.run_steps(2);
     assert_eq!(harness.state().settings().transfer.points.len(), before.points.len());
+    wait_until_idle(&mut harness);
+}
+
+/// What is seen of other values stays as it is when a point is added beyond the ends of the curve, and one step takes
+/// back all that came with it.
+#[test]
+fn a_point_beyond_the_ends_of_the_curve_brings_one_that_holds_the_rest() {
+    let adjust = |mut settings: Settings| {
+        settings.shadows.keep_balanced = false;
+        let (first, last) = (settings.transfer.points[0], *settings.transfer.points.last().expect("a point"));
+        let span = last.value - first.value;
+        let point = |share: f64, opacity| ControlPoint::new(first.value + share * span, [1.0; 3], opacity);
+        settings.transfer.points = vec![point(0.4, 0.0), point(0.5, 0.8), point(0.6, 0.0)];
+        settings
+    };
+    let options =
+        Options { source: Some(SCENE.into()), adjust: Some(Box::new(adjust)), ..Options::default() };
+    let mut harness = window_with(options, Vec2::new(760.0, 1140.0));
+    let transfer = |harness: &Harness<'_, App>| harness.state().settings().transfer.clone();
+    let before = transfer(&harness);
+    let (first, last) = (before.points[0].value, before.points[2].value);
+    let plot = harness.get_by_label("Transfer function plot").rect();
+    for (share, beyond) in [(0.2, first - 1.9 * (last - first)), (0.8, last + 1.9 * (last - first))] {
+        drag(&mut harness, plot.left_top() + vec2(share * plot.width(), 20.0), Vec2::ZERO);
+        harness.run_steps(12);
+        let after = transfer(&harness);
+        assert_eq!(after.points.len(), 5, "{:?}", after.points);
+        let added = after.points.iter().filter(|point| !before.points.contains(point)).collect::<Vec<_>>();
+        assert!(added.iter().any(|point| point.opacity > 0.5), "{added:?}");
+        assert!(added.iter().any(|point| point.opacity == 0.0), "{added:?}");
+        assert!(after.opacity_at(beyond) < 1e-9, "{:?}", after.points);
+        harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+        harness.run_steps(4);
+        assert_eq!(transfer(&harness), before, "one step");
+        harness.run_steps(8);
+    }
     wait_until_idle(&mut harness);
 }
 

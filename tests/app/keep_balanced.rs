@@ -28,12 +28,14 @@ fn a_balance_that_is_kept_follows_changes() {
     assert!(first.shadows.keep_balanced, "as a first look has it");
     assert!(harness.state().is_idle(), "and it is balanced");
 
+    let refined = harness.state().refinements();
     harness.get_by_role_and_label(Role::Slider, "Light opacity").set_value_accesskit(0.1);
     harness.run_steps(2);
     assert!(!harness.state().is_idle());
     wait_until_idle(&mut harness);
     let followed = harness.state().settings().clone();
     assert_eq!(followed.lighting.scale, 0.1);
+    assert_eq!(harness.state().refinements(), refined + 1, "the balance was found before the picture was");
     let (dataset, mut renderer) = beside();
     let measured = balance_quickly(&mut renderer, &dataset, &followed).expect("a balance");
     assert_eq!(followed.shadows.balance.to_bits(), measured.to_bits());

@@ -76,7 +76,7 @@ fn presets_are_tried_on_the_volume() {
     click(&mut harness, "Try presets…");
     let begin = Instant::now();
     // Until the last one is there.
-    while harness.query_by_label("Again, as it looks now").is_none() {
+    while harness.query_by_label("Refresh").is_none() {
         assert!(begin.elapsed() < PATIENCE, "no pictures");
         harness.step();
         std::thread::sleep(Duration::from_millis(5));

@@ -81,7 +81,7 @@ fn lights_are_suggested() {
     let mut harness = window();
     let before = harness.state().settings().clone();
     click(&mut harness, "Suggest…");
-    wait_for(&mut harness, "Again, as it looks now");
+    wait_for(&mut harness, "Refresh");
     assert_eq!(harness.state().settings(), &before, "trying changes nothing");
     assert!(harness.query_by_label("Use As it is").is_some(), "what they are compared with");
     click(&mut harness, "Use Key, suggestion 2");
@@ -102,7 +102,7 @@ fn looks_are_tried_on_the_volume() {
     harness.run_steps(3);
     wait_for(&mut harness, "Use 1 · First look");
     // The others follow one by one.
-    wait_for(&mut harness, "Again, as it looks now");
+    wait_for(&mut harness, "Refresh");
     let count = harness.query_all_by_label_contains("Use ").count();
     assert!([8, 10].contains(&count), "{count} looks");
     assert_eq!(harness.state().settings(), &before, "trying changes nothing");

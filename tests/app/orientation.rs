@@ -120,6 +120,6 @@ fn the_object_lies_down_stands_up_and_stays_so() {
     click(&mut harness, "−z");
     wait_until_turned(&mut harness);
     assert_eq!(settings(&harness).camera.up, SceneAxis::MinusZ);
-    assert!(harness.query_by_label("Stand up or lay down").is_none(), "the menu is closed");
+    assert!(harness.query_by_label("Tilt by 90°").is_none(), "the menu is closed");
     assert!(harness.state().errors().is_empty(), "{:?}", harness.state().errors());
 }

@@ -33,6 +33,8 @@ struct Dock {
     area: Option<Rect>,
     /// There is nothing but the picture.
     is_hidden: bool,
+    /// The window is too narrow for tools beside the picture: they float over it.
+    is_too_narrow: bool,
 }
 
 fn change<R>(ctx: &egui::Context, change: impl FnOnce(&mut Dock) -> R) -> R {
@@ -51,9 +53,13 @@ pub(in crate::app) fn set_docked(ctx: &egui::Context, titles: &BTreeSet<String>)
 
 /// Keeps room beside the picture, if a docked tool is open.
 pub(in crate::app) fn reserve(ui: &mut Ui) {
+    let is_too_narrow = ui.available_width() < NARROWEST + PICTURE;
     let is_needed = change(ui.ctx(), |dock| {
         dock.before = std::mem::take(&mut dock.now);
-        (dock.area, dock.is_hidden) = (None, false);
+        if is_too_narrow {
+            dock.before.clear();
+        }
+        (dock.area, dock.is_hidden, dock.is_too_narrow) = (None, false, is_too_narrow);
         !dock.before.is_empty()
     });
     if !is_needed {
@@ -88,11 +94,20 @@ pub(in crate::app) struct Tool {
 impl Tool {
     /// Shows the tool while it is open.
     pub(in crate::app) fn show(self, ctx: &egui::Context, open: &mut bool, add: impl FnOnce(&mut Ui)) {
+        self.show_as(ctx, open, false, add);
+    }
+
+    /// Shows a tool that asks something, while it is open: Escape closes it wherever the pointer is.
+    pub(in crate::app) fn show_dialog(self, ctx: &egui::Context, open: &mut bool, add: impl FnOnce(&mut Ui)) {
+        self.show_as(ctx, open, true, add);
+    }
+
+    fn show_as(self, ctx: &egui::Context, open: &mut bool, is_dialog: bool, add: impl FnOnce(&mut Ui)) {
         if !*open {
             return;
         }
-        if change(ctx, |dock| dock.docked.contains(self.title)) {
-            self.show_docked(ctx, open, add);
+        if change(ctx, |dock| dock.docked.contains(self.title) && !dock.is_too_narrow) {
+            self.show_docked(ctx, open, is_dialog, add);
         } else {
             self.show_floating(ctx, open, add);
         }
@@ -104,6 +119,9 @@ impl Tool {
         let shown = window.default_width(self.default_width).show(ctx, add);
         let Some(shown) = shown else { return };
         *open &= !frame::is_left(ctx, Some(&shown.response));
+        if change(ctx, |dock| dock.is_too_narrow) {
+            return;
+        }
         // Beside the button that closes it.
         let whole = shown.response.rect;
         let middle = pos2(whole.right() - CLOSE - 12.0, whole.top() + 0.5 * HEADER + 2.0);
@@ -115,7 +133,7 @@ impl Tool {
         }
     }
 
-    fn show_docked(self, ctx: &egui::Context, open: &mut bool, add: impl FnOnce(&mut Ui)) {
+    fn show_docked(self, ctx: &egui::Context, open: &mut bool, is_dialog: bool, add: impl FnOnce(&mut Ui)) {
         if change(ctx, |dock| dock.is_hidden) {
             return;
         }
@@ -136,7 +154,7 @@ impl Tool {
         let mut ui = Ui::new(ctx.clone(), Id::unique((self.title, "docked")), builder);
         ui.set_clip_rect(place);
         // It lies below all windows, and belongs to the pointer that is over it.
-        if ui.rect_contains_pointer(place) && frame::is_for_picture(ctx) {
+        if (is_dialog || ui.rect_contains_pointer(place)) && frame::is_for_picture(ctx) {
             *open = false;
         }
         ui.horizontal(|ui| {

@@ -1,9 +1,10 @@
-//! What all parts of the window share: commands and their keys, colours and sizes, keys for lights, facts of the open volume.
+//! What all parts of the window share: commands and their keys, colours and sizes, keys for lights, facts of the open volume, long names.
 
 pub(super) mod aspect;
 pub(super) mod command_names;
 pub(super) mod commands;
 pub(super) mod dock;
+pub(super) mod elide;
 pub(super) mod frame;
 pub(super) mod give_up;
 pub(super) mod input_pacing;

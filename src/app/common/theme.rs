@@ -4,7 +4,7 @@ use eframe::egui::{self, Color32, FontId, TextStyle, Theme, Vec2};
 
 /// Width of the side panel in points.
 pub(crate) const SIDE_WIDTH: f32 = 316.0;
-/// Widths to which it can be dragged: narrower, four words side by side are cut.
+/// Widths to which it can be dragged: narrower, sliders are too short to aim with.
 pub(crate) const SIDE_WIDTHS: std::ops::RangeInclusive<f32> = 300.0..=560.0;
 /// Height of the transfer function editor in points.
 pub(crate) const EDITOR_HEIGHT: f32 = 158.0;
@@ -12,6 +12,8 @@ pub(crate) const EDITOR_HEIGHT: f32 = 158.0;
 pub(crate) const LABEL_TABLE_HEIGHT: f32 = 230.0;
 /// Width of the labels in front of the controls.
 pub(crate) const LABEL_WIDTH: f32 = 106.0;
+/// How far what belongs to an entry of a list is indented.
+pub(crate) const INDENT: f32 = 12.0;
 /// Width of a typed value behind a slider.
 pub(crate) const VALUE_WIDTH: f32 = 62.0;
 /// Width of the button that puts a value back.

@@ -7,7 +7,7 @@ use crate::app::common::dock;
 use crate::app::common::theme;
 use crate::app::shell::{menu, status};
 use crate::app::viewport::Facts;
-use crate::app::{App, panels};
+use crate::app::{App, panels, text};
 
 impl App {
     /// The panels around the picture.
@@ -49,7 +49,10 @@ impl App {
         );
         let exporting = self.export.progress_unseen();
         let went = self.history.went(&self.settings);
-        status::show(ui, facts, self.loader.progress(), exporting, went, &mut self.messages, commands);
+        let making = self.making();
+        let opening = self.loader.progress();
+        let status = status::Status { facts, opening, exporting, making, went };
+        status::show(ui, status, &mut self.messages, commands);
         if let Some(volume) = &self.volume {
             // A table has a height of its own.
             let (name, height) = if volume.is_shown_by_label(&self.settings) {
@@ -88,5 +91,25 @@ impl App {
         self.layout.docked = dock::docked(ui.ctx());
         (self.layout.slices, self.layout.light_slice) = (self.slices.open, self.light_slice.open);
         self.layout.slice_convention = self.slices.convention;
+    }
+
+    /// What the menu bar says of the open volume.
+    fn title(&self) -> Option<menu::Title> {
+        let volume = self.volume.as_ref()?;
+        let facts = text::menu::facts(volume.dims, volume.spacing_mm, volume.has_unknown_scale);
+        Some(menu::Title { name: volume.name.clone(), facts })
+    }
+
+    /// What the window makes beside pictures, and the user waits for.
+    fn making(&self) -> Option<&'static str> {
+        [
+            (self.is_correcting(), text::status::CORRECTING),
+            (self.is_making_look(), text::status::MAKING_LOOK),
+            (self.light_search.is_some(), text::status::PLACING_LIGHTS),
+            (self.surroundings.is_some(), text::status::READING_SURROUNDINGS),
+            (self.balance.is_some(), text::status::BALANCING),
+        ]
+        .into_iter()
+        .find_map(|(is_made, words)| is_made.then_some(words))
     }
 }

@@ -50,7 +50,8 @@ impl Default for Layout {
             side: true,
             transfer: true,
             kept: false,
-            docked: BTreeSet::new(),
+            // Over the picture it would lie on what is exported.
+            docked: [text::export::TITLE.to_owned()].into(),
             slices: false,
             light_slice: false,
             slice_convention: Convention::default(),

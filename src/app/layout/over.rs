@@ -18,14 +18,12 @@ impl App {
         ctx: &egui::Context,
         commands: &mut Vec<Command>,
     ) {
-        match self.recovery.ui(ctx) {
-            None => {}
-            Some(answer) => {
-                self.memory.settle();
-                if let recovery::Answer::GoOn(look) = answer {
-                    self.open_record(&look, ctx);
-                }
+        if let Some(answer) = self.recovery.ui(ctx) {
+            self.memory.settle();
+            if let recovery::Answer::GoOn(look) = answer {
+                self.open_record(&look, ctx);
             }
+            self.open_what_waits(ctx);
         }
         self.history_list(ctx, commands);
         self.quit.ui(ctx, self.export.is_busy());
@@ -70,7 +68,8 @@ impl App {
             Ok(true) => self.files.ask(Purpose::ExportLight, frame, ctx),
             Err(err) => self.messages.error(text::messages::LIGHT_VOLUME_NOT_SHOWN, err),
         }
-        match self.export.ui(ctx, self.viewport_size()) {
+        let is_anatomical = self.volume.as_ref().is_some_and(|volume| volume.is_anatomical);
+        match self.export.ui(ctx, self.viewport_size(), is_anatomical) {
             None => {}
             Some(export::Request::Choose) => self.files.ask(Purpose::ExportPicture, frame, ctx),
             Some(export::Request::Export) => self.start_export(ctx),

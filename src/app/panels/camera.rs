@@ -7,7 +7,7 @@ use super::super::text::{self, Named};
 use super::controls::{Number, advanced, choice};
 use super::{Panels, sampling};
 use crate::app::common::commands::Command;
-use crate::model::{Fit, ObjectTurn, Projection, SceneAxis};
+use crate::model::{Fit, ObjectTurn, Projection, Sampling, SceneAxis};
 
 const PROJECTIONS: [(Projection, Named); 2] = [
     (Projection::Perspective, text::camera::PERSPECTIVE),
@@ -18,7 +18,10 @@ const FITS: [(Fit, Named); 2] = [(Fit::Frame, text::camera::FRAME), (Fit::Height
 
 /// Shows the section.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
-    let (camera, defaults) = (&mut panels.settings.camera, &panels.defaults.camera);
+    let unit = panels.scene_unit();
+    let (camera, first) = (&mut panels.settings.camera, &panels.defaults.camera);
+    // Of an object that stands another way up, no view is the first one.
+    let of_view = if camera.up == first.up { first.clone() } else { camera.clone() };
     choice(ui, text::camera::PROJECTION, &mut camera.projection, &PROJECTIONS);
     // Lights and floor go with it.
     let mut up = camera.up;
@@ -27,19 +30,19 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     }
     // Stored as 0 … 360, shown around the middle.
     let mut azimuth_deg = (camera.azimuth_deg + 180.0).rem_euclid(360.0) - 180.0;
-    let default_deg = (defaults.azimuth_deg + 180.0).rem_euclid(360.0) - 180.0;
+    let default_deg = (of_view.azimuth_deg + 180.0).rem_euclid(360.0) - 180.0;
     let before_deg = azimuth_deg;
     let turn = |named| Number::new(named, -180.0..=180.0).unit(DEGREES).decimals(1);
     turn(text::camera::AZIMUTH).show(ui, &mut azimuth_deg, default_deg);
     if azimuth_deg != before_deg {
         camera.azimuth_deg = azimuth_deg;
     }
-    turn(text::camera::ELEVATION).show(ui, &mut camera.elevation_deg, defaults.elevation_deg);
-    turn(text::camera::ROLL).show(ui, &mut camera.roll_deg, defaults.roll_deg);
+    turn(text::camera::ELEVATION).show(ui, &mut camera.elevation_deg, of_view.elevation_deg);
+    turn(text::camera::ROLL).show(ui, &mut camera.roll_deg, first.roll_deg);
     let distance = Number::new(text::camera::DISTANCE, 0.05..=50.0).log();
-    distance.show(ui, &mut camera.distance, defaults.distance);
+    distance.show_length(ui, &mut camera.distance, of_view.distance, unit);
     let angle = Number::new(text::camera::FIELD_OF_VIEW, 1.0..=120.0).unit(DEGREES).decimals(1);
-    angle.show(ui, &mut camera.fov_y_deg, defaults.fov_y_deg);
+    angle.show(ui, &mut camera.fov_y_deg, first.fov_y_deg);
     choice(ui, text::camera::FIT, &mut camera.fit, &FITS);
     let reset = text::camera::RESET_VIEW;
     if ui.button(reset.name).on_hover_text(reset.tip).clicked() {
@@ -47,8 +50,9 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     }
     advanced(ui, "advanced camera", |ui| {
         let eye = &mut panels.settings.sampling;
-        let default_slab = panels.defaults.sampling.slab;
-        sampling::show(ui, &mut eye.kernel, &mut eye.slab, default_slab, &mut eye.quadrature);
+        let Sampling { kernel, slab, .. } = panels.defaults.sampling;
+        let first = sampling::FirstLook { kernel, slab };
+        sampling::show(ui, &mut eye.kernel, &mut eye.slab, first, &mut eye.quadrature);
         sampling::show_slabs(ui, &mut eye.slabs);
         sampling::show_engine(ui, eye);
     });

@@ -2,9 +2,11 @@
 
 use std::ops::RangeInclusive;
 
+use eframe::egui::TextStyle::Button as BUTTON;
 use eframe::egui::{self, Align, Layout, Response, Slider, Ui, Vec2};
 
 use super::super::text::{self, Named};
+use crate::app::common::elide::text_width;
 use crate::app::common::reveal;
 use crate::app::common::theme;
 
@@ -42,12 +44,13 @@ impl Number {
         self
     }
 
-    /// Shows the row. `default`: what the reset button puts back.
+    /// Shows the row. `default`: what the reset button puts back, the value of the first look or, where that has none, of
+    /// what was added.
     pub(super) fn show(self, ui: &mut Ui, value: &mut f64, default: f64) -> Response {
         let Self { named, range, unit, log, decimals } = self;
         row(ui, named, |ui| {
             let spacing = ui.spacing().item_spacing.x;
-            let typed = text_width(ui, &format!("{value:.decimals$}{unit}"));
+            let typed = text_width(ui, &format!("{value:.decimals$}{unit}"), &BUTTON);
             let width = theme::VALUE_WIDTH.max(typed + 2.0 * ui.spacing().button_padding.x);
             let room = room(ui) - width - theme::RESET_WIDTH - 3.0 * spacing;
             ui.spacing_mut().slider_width = room.max(30.0);
@@ -56,7 +59,8 @@ impl Number {
             // Settings from files may lie beyond the slider: they stay until the user moves it.
             let slider = slider.clamping(egui::SliderClamping::Edits);
             let response = ui.name_inputs(named.name, |ui| ui.add(slider)).on_hover_text(named.tip);
-            if reset(ui, named.name, (*value - default).abs() > 1e-9) || response.double_clicked() {
+            let back = differs(*value, default).then(|| value_of(default, decimals, unit));
+            if reset(ui, named.name, back.as_deref()) || response.double_clicked() {
                 *value = default;
             }
             response
@@ -64,12 +68,68 @@ impl Number {
     }
 }
 
+/// The unit in which lengths of the scene are shown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct SceneUnit {
+    /// How many of it are one unit of the scene.
+    pub per_scene: f64,
+    /// Behind a number.
+    pub suffix: &'static str,
+}
+
+impl Number {
+    /// Shows the row of a length; value, default and range are in units of the scene.
+    pub(super) fn show_length(self, ui: &mut Ui, value: &mut f64, default: f64, unit: SceneUnit) {
+        let SceneUnit { per_scene, suffix } = unit;
+        let range = self.range.start() * per_scene..=self.range.end() * per_scene;
+        let mut length = *value * per_scene;
+        let before = length;
+        Self { range, unit: suffix, decimals: 1, ..self }.show(ui, &mut length, default * per_scene);
+        if length != before {
+            *value = length / per_scene;
+        }
+    }
+}
+
+/// Relative difference from which on a value is another: more than rounding of numbers that are shown in other units.
+const ROUNDING: f64 = 1e-6;
+
+/// Whether a value is another than what would be put back.
+fn differs(value: f64, default: f64) -> bool {
+    (value - default).abs() > ROUNDING * default.abs().max(1e-3)
+}
+
+/// A value as its row shows it; with more digits where those of the row would be zeros only.
+fn value_of(value: f64, decimals: usize, unit: &str) -> String {
+    let words = format!("{value:.decimals$}");
+    let is_lost = value != 0.0 && words.chars().all(|c| "-0.".contains(c));
+    let words = if is_lost { short(value) } else { words };
+    format!("{words}{unit}")
+}
+
+/// Points by which what is being shown is indented in its section.
+fn indentation(ui: &Ui) -> f32 {
+    let left = ui.data(|data| data.get_temp::<f32>(left_id())).unwrap_or(ui.max_rect().left());
+    // A part of the label is always left.
+    (ui.max_rect().left() - left).clamp(0.0, theme::LABEL_WIDTH / 2.0)
+}
+
+/// Shows rows that belong to the one above them; their controls stand where those of other rows do.
+pub(super) fn indented<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
+    ui.scope(|ui| {
+        ui.spacing_mut().indent = theme::INDENT;
+        ui.indent(0, add).inner
+    })
+    .inner
+}
+
 /// A row: a label of the usual width, then what `add` shows.
 pub(super) fn row<R>(ui: &mut Ui, named: Named, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let width = theme::LABEL_WIDTH - indentation(ui);
     let shown = ui.horizontal(|ui| {
-        let size = Vec2::new(theme::LABEL_WIDTH, ui.spacing().interact_size.y);
+        let size = Vec2::new(width, ui.spacing().interact_size.y);
         ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
-            ui.set_min_width(theme::LABEL_WIDTH);
+            ui.set_min_width(width);
             ui.add(egui::Label::new(named.name).truncate().selectable(false)).on_hover_text(named.tip);
         });
         add(ui)
@@ -91,31 +151,25 @@ fn room(ui: &Ui) -> f32 {
     ui.available_width().min(ui.clip_rect().right() - ui.cursor().left())
 }
 
-/// Points that words of a control take side by side.
-fn text_width(ui: &Ui, words: &str) -> f32 {
-    let font = egui::TextStyle::Button.resolve(ui.style());
-    ui.painter().layout_no_wrap(words.to_owned(), font, ui.visuals().text_color()).size().x
-}
-
-/// The button that puts a value back; it is there only when there is something to put back.
-pub(super) fn reset(ui: &mut Ui, label: &str, differs: bool) -> bool {
+/// The button that puts a value back; `back` says to what. It is there only when there is something to put back.
+pub(super) fn reset(ui: &mut Ui, label: &str, back: Option<&str>) -> bool {
     let size = Vec2::new(theme::RESET_WIDTH, ui.spacing().interact_size.y);
-    if !differs {
+    let Some(back) = back else {
         ui.allocate_exact_size(size, egui::Sense::hover());
         return false;
-    }
+    };
     let (_, response) = ui.allocate_exact_size(size, egui::Sense::click());
-    reset_button(ui, response, label)
+    reset_button(ui, response, label, &text::common::reset_to(back))
 }
 
 /// Paints a button that puts something back; whether it was clicked.
-fn reset_button(ui: &Ui, response: Response, label: &str) -> bool {
+fn reset_button(ui: &Ui, response: Response, label: &str, tip: &str) -> bool {
     let area = response.rect;
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, text::common::reset(label)));
     let lit = response.hovered() || response.has_focus();
     let ink = if lit { theme::accent(ui.visuals()) } else { ui.visuals().weak_text_color() };
     circular_arrow(ui, area.center(), ink);
-    response.on_hover_text(text::common::reset_tip(label)).clicked()
+    response.on_hover_text(tip).clicked()
 }
 
 /// Three quarters of a circle with an arrowhead, turning back.
@@ -139,7 +193,8 @@ pub(super) fn choice<T: PartialEq + Copy>(
     choice_with(ui, named, value, options, |_| None)
 }
 
-/// One of a few values, side by side; what more there is to say of each.
+/// One of a few values, side by side or, where the row is too narrow for all of their words, in a list that opens; what
+/// more there is to say of each.
 pub(super) fn choice_with<T: PartialEq + Copy>(
     ui: &mut Ui,
     named: Named,
@@ -148,19 +203,19 @@ pub(super) fn choice_with<T: PartialEq + Copy>(
     more: impl Fn(&T) -> Option<String>,
 ) -> bool {
     row(ui, named, |ui| {
+        let spacing = ui.spacing().item_spacing.x;
         ui.spacing_mut().item_spacing.x = 2.0;
         if options.len() > 3 {
             // Four words would be wider than the panel otherwise.
             ui.spacing_mut().button_padding.x *= 0.7;
         }
-        let mut changed = false;
-        // Long words take another row.
         let padding = 2.0 * ui.spacing().button_padding.x + ui.spacing().item_spacing.x;
-        let needed: f32 = options.iter().map(|(_, named)| text_width(ui, named.name) + padding).sum();
-        // There is no space behind the last, and places are rounded to pixels.
-        let wraps = needed - ui.spacing().item_spacing.x + 1.0 > room(ui);
-        let layout = Layout::left_to_right(Align::Center).with_main_wrap(wraps);
-        ui.with_layout(layout, |ui| {
+        let needed: f32 =
+            options.iter().map(|(_, named)| text_width(ui, named.name, &BUTTON) + padding).sum();
+        let chosen = options.iter().find(|(option, _)| *option == *value);
+        let shown = chosen.map_or("", |(_, of_option)| of_option.name);
+        let mut changed = false;
+        let mut pick = |ui: &mut Ui| {
             for (option, of_option) in options {
                 let mut response =
                     ui.selectable_label(value == option, of_option.name).on_hover_text(of_option.tip);
@@ -172,7 +227,16 @@ pub(super) fn choice_with<T: PartialEq + Copy>(
                     changed = true;
                 }
             }
-        });
+        };
+        // There is no space behind the last, and places are rounded to pixels.
+        if needed - ui.spacing().item_spacing.x + 1.0 <= room(ui) {
+            pick(ui);
+        } else {
+            let width = room(ui) - theme::RESET_WIDTH - spacing;
+            let list = egui::ComboBox::from_id_salt(named.name).selected_text(shown).width(width).truncate();
+            let list = ui.name_inputs(named.name, |ui| list.show_ui(ui, pick));
+            list.response.on_hover_text(named.tip);
+        }
         changed
     })
 }
@@ -233,7 +297,11 @@ pub(super) fn section(
 ) -> bool {
     let header = egui::CollapsingHeader::new(egui::RichText::new(title).strong());
     let header = header.open(reveal::opens(ui.ctx(), title, false).then_some(true));
-    ui.data_mut(|data| data.insert_temp(section_id(), title));
+    let left = ui.max_rect().left();
+    ui.data_mut(|data| {
+        data.insert_temp(section_id(), title);
+        data.insert_temp(left_id(), left);
+    });
     let shown = header.default_open(open).show_unindented(ui, |ui| {
         add(ui);
         ui.add_space(4.0);
@@ -257,7 +325,7 @@ pub(super) fn section(
             Vec2::new(theme::RESET_WIDTH, row.height()),
         );
         let button = ui.interact(area, ui.scope_id().with((title, "reset")), egui::Sense::click());
-        resets = reset_button(ui, button, title);
+        resets = reset_button(ui, button, title, &text::common::reset_to_first_look(title));
     }
     let id = shown.header_response.id.with("openness");
     let before = ui.data(|data| data.get_temp::<f32>(id)).unwrap_or(shown.openness);
@@ -279,6 +347,11 @@ fn section_id() -> egui::Id {
     egui::Id::unique("section of the panel")
 }
 
+/// Where the left border is kept of the section that is being shown.
+fn left_id() -> egui::Id {
+    egui::Id::unique("left border of the section")
+}
+
 /// The title of the section that is being shown.
 fn section_of(ui: &Ui) -> &'static str {
     ui.data(|data| data.get_temp(section_id())).unwrap_or_default()
@@ -289,4 +362,19 @@ pub(super) fn advanced(ui: &mut Ui, salt: &str, add: impl FnOnce(&mut Ui)) {
     let header = egui::CollapsingHeader::new(text::common::ADVANCED).id_salt(salt);
     let opens = reveal::opens(ui.ctx(), section_of(ui), true);
     header.open(opens.then_some(true)).show_unindented(ui, add);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arrows_say_to_what_and_only_beside_other_values() {
+        assert!(!differs(0.1, 0.1) && !differs(f64::from(0.1f32), 0.1), "rounding is nobody's doing");
+        assert!(differs(0.11, 0.1) && differs(0.0, 1e-3) && differs(1e-3, 0.0));
+        assert_eq!(value_of(0.1, 2, ""), "0.10");
+        assert_eq!(value_of(45.0, 1, "°"), "45.0°");
+        assert_eq!(value_of(0.0, 2, ""), "0.00");
+        assert_eq!(value_of(0.0021, 2, " mm"), "0.0021 mm");
+    }
 }

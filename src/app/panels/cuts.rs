@@ -8,7 +8,7 @@ use super::Panels;
 use super::controls::{Number, reset, row, switch, unlabelled};
 use crate::app::common::commands::Command;
 use crate::app::common::volume_facts::VolumeFacts;
-use crate::model::{ClipPlane, CropBox, CutEffect, MIN_CROP};
+use crate::model::{CropBox, CutEffect, MIN_CROP};
 
 /// Shows the section.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
@@ -16,18 +16,21 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
         ui.weak(text::cuts::NOTHING_OPEN);
         return;
     };
+    let unit = panels.scene_unit();
     let cuts = &mut panels.settings.cuts;
     switch(ui, text::cuts::CROP, &mut cuts.crop.on);
     ui.add_enabled_ui(cuts.crop.on, |ui| {
         for axis in 0..3 {
-            extent(ui, &mut cuts.crop, axis, volume);
+            extent(ui, &mut cuts.crop, &panels.defaults.cuts.crop, axis, volume);
         }
         effect(ui, text::cuts::OUTSIDE, &mut cuts.crop.effect);
     });
     ui.add_space(4.0);
     switch(ui, text::cuts::PLANE, &mut cuts.plane.on);
     ui.add_enabled_ui(cuts.plane.on, |ui| {
-        plane(ui, &mut cuts.plane, panels.defaults.cuts.plane.offset, volume);
+        let reach = volume.scene.support_radius();
+        let offset = Number::new(text::cuts::OFFSET, -reach..=reach);
+        offset.show_length(ui, &mut cuts.plane.offset, panels.defaults.cuts.plane.offset, unit);
         row(ui, text::cuts::FACING, |ui| {
             for (axis, normal) in text::cuts::AXES.into_iter().zip(DVec3::AXES) {
                 if ui.button(axis).on_hover_text(text::cuts::across(axis)).clicked() {
@@ -50,7 +53,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
 }
 
 /// Where the box begins and ends along an axis, in voxels.
-fn extent(ui: &mut Ui, crop: &mut CropBox, axis: usize, volume: &VolumeFacts) {
+fn extent(ui: &mut Ui, crop: &mut CropBox, first: &CropBox, axis: usize, volume: &VolumeFacts) {
     let name = text::cuts::AXES[axis];
     let voxels = volume.dims[axis] as f64;
     row(ui, Named { name, tip: text::cuts::EXTENT_TIP }, |ui| {
@@ -68,24 +71,14 @@ fn extent(ui: &mut Ui, crop: &mut CropBox, axis: usize, volume: &VolumeFacts) {
         if ui.name_inputs(text::cuts::crop_to(name), |ui| ui.add(ends)).changed() {
             crop.high[axis] = to / voxels;
         }
-        let differs = (crop.low[axis], crop.high[axis]) != (0.0, 1.0);
-        if reset(ui, &text::cuts::crop(name), differs) {
-            (crop.low[axis], crop.high[axis]) = (0.0, 1.0);
+        let back = (first.low[axis], first.high[axis]);
+        let words = text::cuts::voxels((back.0 * voxels).round(), (back.1 * voxels).round());
+        let differs = (crop.low[axis], crop.high[axis]) != back;
+        if reset(ui, &text::cuts::crop(name), differs.then_some(words.as_str())) {
+            (crop.low[axis], crop.high[axis]) = back;
         }
         ui.weak(text::cuts::length((to - from) * volume.spacing_mm[axis], volume.length_unit()));
     });
-}
-
-fn plane(ui: &mut Ui, plane: &mut ClipPlane, default: f64, volume: &VolumeFacts) {
-    let unit = volume.length_unit();
-    let (mm, reach) = (volume.scene.mm_per_unit / unit.mm, volume.scene.support_radius());
-    let mut moved = plane.offset * mm;
-    let before = moved;
-    let offset = Number::new(text::cuts::OFFSET, -reach * mm..=reach * mm);
-    offset.unit(unit.suffix).decimals(1).show(ui, &mut moved, default * mm);
-    if moved != before {
-        plane.offset = moved / mm;
-    }
 }
 
 /// What becomes of what is cut away.

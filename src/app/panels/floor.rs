@@ -5,26 +5,21 @@ use eframe::egui::Ui;
 use super::super::text;
 use super::Panels;
 use super::controls::{Number, color, row, switch};
-use crate::app::common::volume_facts::VolumeFacts;
-use crate::app::text::common::LengthUnit;
 
 /// Shows the section.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
+    let unit = panels.scene_unit();
+    let reach = panels.volume.map_or(1.0, |volume| volume.scene.support_radius());
     let (floor, defaults) = (&mut panels.settings.floor, &panels.defaults.floor);
     switch(ui, text::floor::ON, &mut floor.on);
-    let unit = panels.volume.map_or_else(|| LengthUnit::showing(1.0, true), VolumeFacts::length_unit);
-    let mm = panels.volume.map_or(1.0, |volume| volume.scene.mm_per_unit) / unit.mm;
+    // Under an object that stands another way up, no height is the first one.
+    let is_up = panels.settings.camera.up == panels.defaults.camera.up;
+    let first_height = if is_up { defaults.height } else { floor.height };
     ui.add_enabled_ui(floor.on, |ui| {
-        let (mut length, reach) =
-            (floor.height * mm, panels.volume.map_or(1.0, |v| v.scene.support_radius()));
-        let before = length;
-        let height = Number::new(text::floor::HEIGHT, -reach * mm..=reach * mm);
-        height.unit(unit.suffix).decimals(1).show(ui, &mut length, defaults.height * mm);
-        if length != before {
-            floor.height = length / mm;
-        }
+        let height = Number::new(text::floor::HEIGHT, -reach..=reach);
+        height.show_length(ui, &mut floor.height, first_height, unit);
         let radius = Number::new(text::floor::RADIUS, 0.5..=20.0).log();
-        radius.show(ui, &mut floor.radius, defaults.radius);
+        radius.show_length(ui, &mut floor.radius, defaults.radius, unit);
         let opacity = Number::new(text::floor::OPACITY, 0.0..=1.0);
         opacity.show(ui, &mut floor.opacity, defaults.opacity);
         let named = text::floor::COLOR;

@@ -6,8 +6,9 @@ use glam::DVec3;
 use super::super::text::common::{DEGREES, TIMES};
 use super::super::text::{self, Named};
 use super::Panels;
-use super::controls::{Number, choice, color, row, switch, unlabelled};
+use super::controls::{Number, SceneUnit, choice, color, indented, row, switch, unlabelled};
 use crate::app::common::commands::Command;
+use crate::app::common::elide::elide_middle;
 use crate::app::common::theme;
 use crate::model::{Camera, Hood, Light, LightKind, LightLock, LightShape, MAX_LIGHTS, MAX_NAME, Settings};
 
@@ -24,17 +25,38 @@ const SHAPES: [(LightShape, Named); 4] = [
     (LightShape::Ball, text::lights::BALL),
 ];
 
-/// The list of lights; the selected one is open.
+/// The light that the reset buttons of a light put back: the one of the first look that has its name or, if it was renamed,
+/// its place; of lights that were added, as they were then.
+fn original(first: &[Light], lights: &[Light], index: usize) -> Light {
+    let Some(light) = lights.get(index) else { return Light::default() };
+    let is_here = |first: &&Light| lights.iter().any(|light| light.name == first.name);
+    let of_first_look = first.iter().find(|first| first.name == light.name);
+    let renamed = || first.get(index).filter(|first| !is_here(first));
+    let number = || (1..=MAX_LIGHTS).find(|&number| text::lights::numbered(number) == light.name);
+    let added = || Light {
+        intensity: added_intensity(number().unwrap_or(index + 1)),
+        position: [0.0, 0.0, ADDED_DISTANCE],
+        ..Light::default()
+    };
+    of_first_look.or_else(renamed).cloned().unwrap_or_else(added)
+}
+
+/// The list of lights, with the settings of the selected one under it.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     let mut removed = None;
+    let unit = panels.scene_unit();
     for index in 0..panels.settings.lights.len() {
         ui.push_id(index, |ui| {
             let selected = *panels.selected_light == index;
             if head(ui, &mut panels.settings.lights[index], index, selected) {
                 *panels.selected_light = index;
             }
+            if !selected {
+                return;
+            }
+            let first = original(&panels.defaults.lights, &panels.settings.lights, index);
             let Settings { camera, lights, .. } = &mut *panels.settings;
-            if selected && body(ui, &mut lights[index], camera, panels.commands) {
+            if indented(ui, |ui| body(ui, &mut lights[index], (&first, unit), camera, panels.commands)) {
                 removed = Some(index);
             }
         });
@@ -58,18 +80,25 @@ fn head(ui: &mut Ui, light: &mut Light, index: usize, selected: bool) -> bool {
         let on = ui.name_inputs(text::lights::switch(&light.name), |ui| ui.checkbox(&mut light.on, ""));
         on.on_hover_text(text::lights::ON_TIP);
         color(ui, &text::lights::color(index + 1), &mut light.color);
-        let name = if light.name.is_empty() { text::lights::UNNAMED } else { &light.name };
-        let name = egui::RichText::new(name);
+        let whole = if light.name.is_empty() { text::lights::UNNAMED } else { &light.name };
+        let room = ui.available_width() - 2.0 * ui.spacing().button_padding.x;
+        let name = egui::RichText::new(elide_middle(ui, whole, &egui::TextStyle::Button, room));
         let name = if selected { name.color(theme::accent(ui.visuals())).strong() } else { name };
-        let button = egui::Button::selectable(selected, name).truncate();
-        ui.add(button).on_hover_text(text::lights::SELECT_TIP).clicked()
+        let button = ui.add(egui::Button::selectable(selected, name).truncate());
+        button.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, selected, whole));
+        button.on_hover_text(text::lights::SELECT_TIP).clicked()
     })
     .inner
 }
 
 /// Everything else. Whether the light is to be removed.
-fn body(ui: &mut Ui, light: &mut Light, camera: &Camera, commands: &mut Vec<Command>) -> bool {
-    let fresh = Light::default();
+fn body(
+    ui: &mut Ui,
+    light: &mut Light,
+    (first, unit): (&Light, SceneUnit),
+    camera: &Camera,
+    commands: &mut Vec<Command>,
+) -> bool {
     row(ui, text::lights::NAME, |ui| {
         let field = egui::TextEdit::singleline(&mut light.name)
             .char_limit(MAX_NAME)
@@ -79,18 +108,20 @@ fn body(ui: &mut Ui, light: &mut Light, camera: &Camera, commands: &mut Vec<Comm
     if choice(ui, text::lights::KIND, &mut light.kind, &KINDS) {
         bring_into_sight(light, camera);
     }
-    Number::new(text::lights::INTENSITY, 0.0..=4.0).show(ui, &mut light.intensity, fresh.intensity);
+    Number::new(text::lights::INTENSITY, 0.0..=4.0).show(ui, &mut light.intensity, first.intensity);
     if light.kind == LightKind::Perspective {
         let mut position = DVec3::from(light.position);
         let mut distance = position.length();
         let field = Number::new(text::lights::DISTANCE, 0.1..=20.0).log();
-        if field.show(ui, &mut distance, 3.0).changed() {
+        let before = distance;
+        field.show_length(ui, &mut distance, DVec3::from(first.position).length(), unit);
+        if distance != before {
             position = position.normalize_or(DVec3::Z) * distance;
             light.position = position.into();
         }
-        hood(ui, &mut light.hood);
+        hood(ui, &mut light.hood, &first.hood);
     }
-    shape(ui, light);
+    shape(ui, light, first, unit);
     let mut lock = light.lock;
     choice(ui, text::lights::LOCK, &mut lock, &LOCKS);
     if lock != light.lock {
@@ -110,14 +141,15 @@ fn body(ui: &mut Ui, light: &mut Light, camera: &Camera, commands: &mut Vec<Comm
         });
     });
     let density = Number::new(text::lights::DENSITY, 0.01..=4.0).unit(TIMES).log();
-    density.show(ui, &mut light.density_scale, fresh.density_scale);
+    density.show(ui, &mut light.density_scale, first.density_scale);
     switch(ui, text::lights::CASTS_SHADOWS, &mut light.casts_shadows);
-    ui.button(text::lights::REMOVE.name).on_hover_text(text::lights::REMOVE.tip).clicked()
+    unlabelled(ui, |ui| {
+        ui.button(text::lights::REMOVE.name).on_hover_text(text::lights::REMOVE.tip).clicked()
+    })
 }
 
 /// What shines, and how large it is.
-fn shape(ui: &mut Ui, light: &mut Light) {
-    let fresh = Light::default();
+fn shape(ui: &mut Ui, light: &mut Light, first: &Light, unit: SceneUnit) {
     choice(ui, text::lights::SHAPE, &mut light.shape, &SHAPES);
     if light.shape == LightShape::Point {
         return;
@@ -125,29 +157,28 @@ fn shape(ui: &mut Ui, light: &mut Light) {
     match light.kind {
         LightKind::Parallel => {
             let angle = Number::new(text::lights::ANGLE, 0.0..=60.0).unit(DEGREES).decimals(1);
-            angle.show(ui, &mut light.angle_deg, fresh.angle_deg);
+            angle.show(ui, &mut light.angle_deg, first.angle_deg);
         }
         LightKind::Perspective => {
-            Number::new(text::lights::SIZE, 0.0..=4.0).show(ui, &mut light.size, fresh.size);
+            Number::new(text::lights::SIZE, 0.0..=4.0).show_length(ui, &mut light.size, first.size, unit);
         }
     }
     if light.shape == LightShape::Rectangle {
         let aspect = Number::new(text::lights::ASPECT, 0.1..=10.0).log();
-        aspect.show(ui, &mut light.aspect, fresh.aspect);
+        aspect.show(ui, &mut light.aspect, first.aspect);
         let turn = Number::new(text::lights::TURN, -180.0..=180.0).unit(DEGREES).decimals(0);
-        turn.show(ui, &mut light.turn_deg, fresh.turn_deg);
+        turn.show(ui, &mut light.turn_deg, first.turn_deg);
     }
 }
 
 /// A lampshade.
-fn hood(ui: &mut Ui, hood: &mut Hood) {
-    let fresh = Hood::default();
+fn hood(ui: &mut Ui, hood: &mut Hood, first: &Hood) {
     switch(ui, text::lights::HOOD, &mut hood.on);
     if hood.on {
         let cone = Number::new(text::lights::CONE, 1.0..=89.0).unit(DEGREES).decimals(1);
-        cone.show(ui, &mut hood.half_angle_deg, fresh.half_angle_deg);
+        cone.show(ui, &mut hood.half_angle_deg, first.half_angle_deg);
         let rim = Number::new(text::lights::RIM, 0.0..=45.0).unit(DEGREES).decimals(1);
-        rim.show(ui, &mut hood.rim_deg, fresh.rim_deg);
+        rim.show(ui, &mut hood.rim_deg, first.rim_deg);
     }
 }
 
@@ -170,6 +201,9 @@ fn bring_into_sight(light: &mut Light, camera: &Camera) {
     light.set_scene_position(position, camera);
 }
 
+/// How far from the middle of the volume, whose longest edge is 2 long, a light is added: outside every volume.
+const ADDED_DISTANCE: f64 = 3.0;
+
 /// Places for a new light around the line of sight.
 const PLACES: u32 = 8;
 
@@ -183,6 +217,11 @@ const COLORS: [[f32; 3]; 6] = [
     [1.0, 0.80, 0.84],
 ];
 
+/// Intensity of a light that is added as one of so many: all of them together grow brighter by less than each.
+fn added_intensity(count: usize) -> f64 {
+    0.6 / (count as f64).sqrt()
+}
+
 /// Adds a light beside the viewer and gives its index.
 pub(in crate::app) fn add_light(settings: &mut Settings) -> Option<usize> {
     let index = settings.lights.len();
@@ -191,8 +230,7 @@ pub(in crate::app) fn add_light(settings: &mut Settings) -> Option<usize> {
             name: text::lights::numbered(index + 1),
             position: free_place(&settings.camera, &settings.lights),
             color: COLORS[index % COLORS.len()],
-            // All of them together grow brighter by less than each.
-            intensity: 0.6 / ((index + 1) as f64).sqrt(),
+            intensity: added_intensity(index + 1),
             ..Light::default()
         });
         index
@@ -211,5 +249,37 @@ fn free_place(camera: &Camera, lights: &[Light]) -> [f64; 3] {
     let taken: Vec<DVec3> = lights.iter().map(|light| light.in_scene(camera).direction()).collect();
     let nearest = |place: DVec3| taken.iter().map(|taken| taken.dot(place)).fold(-1.0, f64::max);
     let free = (0..PLACES).map(place).min_by(|&a, &b| nearest(a).total_cmp(&nearest(b)));
-    (free.unwrap_or(DVec3::Z) * 3.0).into()
+    (free.unwrap_or(DVec3::Z) * ADDED_DISTANCE).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn untouched_lights_are_as_they_would_be_put_back() {
+        let named = |name: &str, intensity| Light { name: name.to_owned(), intensity, ..Light::default() };
+        let first = vec![named("Key", 1.0), named("Fill", 0.1)];
+        let mut settings = Settings { lights: first.clone(), ..Settings::default() };
+        let is_original = |settings: &Settings, at: usize| {
+            let original = original(&first, &settings.lights, at);
+            let light = &settings.lights[at];
+            let distance = |light: &Light| DVec3::from(light.position).length();
+            original.intensity == light.intensity && (distance(&original) - distance(light)).abs() < 1e-9
+        };
+        assert!(is_original(&settings, 0) && is_original(&settings, 1));
+        add_light(&mut settings);
+        add_light(&mut settings);
+        assert!((0..4).all(|at| is_original(&settings, at)));
+        // Whatever its name and its place.
+        settings.lights[1].name = "Rim".to_owned();
+        assert!((0..4).all(|at| is_original(&settings, at)));
+        settings.lights[1].name = "Fill".to_owned();
+        settings.lights.remove(0);
+        assert!((0..3).all(|at| is_original(&settings, at)));
+        settings.lights[0].intensity = 0.3;
+        assert!(!is_original(&settings, 0));
+        assert_eq!(original(&first, &settings.lights, 0).intensity, 0.1);
+        assert_eq!(original(&first, &settings.lights, 9).intensity, Light::default().intensity);
+    }
 }

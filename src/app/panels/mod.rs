@@ -16,10 +16,11 @@ mod sky;
 
 use eframe::egui;
 
-use self::controls::Header;
+use self::controls::{Header, SceneUnit};
 use super::common::commands::Command;
 use super::common::volume_facts::VolumeFacts;
 use super::text;
+use super::text::common::LengthUnit;
 use super::viewport::Facts;
 use super::viewport::compare::Compare;
 use crate::data::KindName;
@@ -48,6 +49,22 @@ pub(super) struct Panels<'a> {
     pub balancing: bool,
     /// What the user asks for.
     pub commands: &'a mut Vec<Command>,
+}
+
+impl Panels<'_> {
+    /// The unit in which lengths are shown.
+    fn scene_unit(&self) -> SceneUnit {
+        let per_mm = |unit: LengthUnit, mm: f64| SceneUnit { per_scene: mm / unit.mm, suffix: unit.suffix };
+        match self.volume {
+            Some(volume) => per_mm(volume.length_unit(), volume.scene.mm_per_unit),
+            None => per_mm(LengthUnit::showing(1.0, true), 1.0),
+        }
+    }
+
+    /// Whether a table of labels says what is seen.
+    fn is_by_label(&self) -> bool {
+        self.volume.is_some_and(|volume| volume.is_shown_by_label(self.settings))
+    }
 }
 
 /// Shows all sections, in the order in which people work. Whatever they hold, the panel is as wide as it was made.

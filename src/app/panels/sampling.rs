@@ -36,12 +36,19 @@ const GRADIENTS: [(Gradients, Named); 3] = [
     (Gradients::Sheets, text::sampling::NORMALS_OF_SHEETS),
 ];
 
-/// Shows the three rows. `default_slab`: what the reset button puts back.
+/// Kernel and slab of the first look, which reset buttons put back.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FirstLook {
+    pub kernel: Kernel,
+    pub slab: f64,
+}
+
+/// Shows the three rows.
 pub(super) fn show(
     ui: &mut Ui,
     kernel: &mut Kernel,
     slab: &mut f64,
-    default_slab: f64,
+    first: FirstLook,
     quadrature: &mut Quadrature,
 ) {
     let sigma = if let Kernel::Gaussian { sigma } = kernel { *sigma } else { SIGMA };
@@ -53,9 +60,10 @@ pub(super) fn show(
     choice(ui, text::sampling::KERNEL, kernel, &kernels);
     let voxels = |named, range| Number::new(named, range).unit(text::common::VOX);
     if let Kernel::Gaussian { sigma } = kernel {
-        voxels(text::sampling::SIGMA, 0.4..=0.8).show(ui, sigma, SIGMA);
+        let first_sigma = if let Kernel::Gaussian { sigma } = first.kernel { sigma } else { SIGMA };
+        voxels(text::sampling::SIGMA, 0.4..=0.8).show(ui, sigma, first_sigma);
     }
-    voxels(text::sampling::SLAB, 0.25..=2.0).show(ui, slab, default_slab);
+    voxels(text::sampling::SLAB, 0.25..=2.0).show(ui, slab, first.slab);
     choice(ui, text::sampling::QUADRATURE, quadrature, &QUADRATURES);
 }
 

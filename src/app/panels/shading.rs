@@ -5,7 +5,7 @@ use eframe::egui::Ui;
 use super::super::text::common::TIMES;
 use super::super::text::{self, Named};
 use super::Panels;
-use super::controls::{Number, choice, color, row};
+use super::controls::{Number, choice, color, reset, row};
 use crate::model::{MAX_EXPOSURE, MIN_EXPOSURE, Sides, ToneMap};
 
 const TONE_MAPS: [(ToneMap, Named); 2] =
@@ -39,9 +39,10 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     row(ui, text::shading::BACKGROUND, |ui| {
         color(ui, text::shading::BACKGROUND_TOP, &mut output.background.top);
         color(ui, text::shading::BACKGROUND_BOTTOM, &mut output.background.bottom);
-        let reset = text::shading::RESET_BACKGROUND;
-        if ui.small_button(reset.name).on_hover_text(reset.tip).clicked() {
-            output.background = panels.defaults.output.background;
+        let first = panels.defaults.output.background;
+        let back = (output.background != first).then_some(text::common::FIRST_LOOK);
+        if reset(ui, text::shading::BACKGROUND.name, back) {
+            output.background = first;
         }
     });
 }

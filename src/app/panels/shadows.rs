@@ -11,7 +11,7 @@ use crate::app::common::theme;
 use crate::app::viewport::LightCost;
 use crate::model::{
     Deposit, LightShape, LightStorage, MAX_LEAST_BLOCKS, MAX_LIGHT_SAMPLES, NearField, Precision, Quality,
-    Resolution, ReverseKernel, ShadowAlgorithm,
+    Resolution, ReverseKernel, ShadowAlgorithm, Shadows,
 };
 
 /// From this share of black the meter warns: a third of the picture tells nothing any more.
@@ -87,8 +87,9 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
         advanced(ui, "advanced shadows", |ui| {
             let combines = panels.settings.combines_lights();
             let shadows = &mut panels.settings.shadows;
-            let default_slab = panels.defaults.shadows.slab;
-            sampling::show(ui, &mut shadows.kernel, &mut shadows.slab, default_slab, &mut shadows.quadrature);
+            let Shadows { kernel, slab, .. } = panels.defaults.shadows;
+            let first = sampling::FirstLook { kernel, slab };
+            sampling::show(ui, &mut shadows.kernel, &mut shadows.slab, first, &mut shadows.quadrature);
             choice(ui, text::shadows::REVERSE_KERNEL, &mut shadows.reverse_kernel, &REVERSE_KERNELS);
             choice(ui, text::shadows::PRECISION, &mut shadows.precision, &PRECISIONS);
             choice(ui, text::shadows::STORAGE, &mut shadows.storage, &STORAGES);
@@ -177,7 +178,9 @@ fn balance(ui: &mut Ui, panels: &mut Panels<'_>) {
     let balance = Number::new(text::shadows::BALANCE, 0.1..=10.0).unit(TIMES).log();
     let shadows = &mut panels.settings.shadows;
     let before = shadows.balance;
-    balance.show(ui, &mut shadows.balance, panels.defaults.shadows.balance);
+    // One that is kept is measured, and not set: there is nothing to put back.
+    let first = if shadows.keep_balanced { before } else { panels.defaults.shadows.balance };
+    balance.show(ui, &mut shadows.balance, first);
     if shadows.balance.to_bits() != before.to_bits() {
         // Set by hand, it stays.
         shadows.keep_balanced = false;

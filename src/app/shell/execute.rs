@@ -118,7 +118,11 @@ impl App {
             }
             Command::LookFrom(view) => {
                 if self.can_frame(command, ctx) {
-                    self.settings.camera.look_from(view);
+                    if self.volume.as_ref().is_some_and(|volume| volume.is_anatomical) {
+                        self.settings.camera.look_at_body(view);
+                    } else {
+                        self.settings.camera.look_from(view);
+                    }
                     self.frame_object();
                 }
             }
@@ -283,7 +287,7 @@ impl App {
 
     pub(in crate::app) fn viewport_size(&self) -> [u32; 2] {
         // Before there is a picture, as many pixels as the smallest usual screens have.
-        self.canvas.map_or([1280, 720], |canvas| canvas.size.map(|n| n.max(1)))
+        self.canvas.map_or([1280, 720], |canvas| canvas.room.map(|n| n.max(1)))
     }
 
     /// A file was chosen or typed.

@@ -4,7 +4,8 @@ use eframe::egui::{self, Button, ThemePreference};
 
 use crate::app::common::aspect::Alternatives;
 use crate::app::common::commands::Command;
-use crate::app::common::{frame, theme};
+use crate::app::common::elide::{elide_middle, text_width};
+use crate::app::common::theme;
 use crate::app::memory::{EarlierRun, RecentFile, RecentPictures};
 use crate::app::text;
 use crate::app::windows::recovery;
@@ -15,6 +16,9 @@ use crate::model::{MAX_LIGHTS, MAX_NAME, ObjectTurn, Projection, Rig, Settings, 
 /// Characters of a path under the pointer: the longest that there are.
 const LONGEST_PATH: usize = 4096;
 
+/// Points of a file's name in a menu: menus stay narrower than the smallest window.
+const LONGEST_NAME: f32 = 300.0;
+
 /// Points of the longer edge of a recent file's picture: what it is of can be told, and the list fits on low screens.
 const RECENT_EDGE: f32 = 48.0;
 
@@ -22,8 +26,8 @@ const RECENT_EDGE: f32 = 48.0;
 pub(crate) struct Menu<'a> {
     /// The look.
     pub settings: &'a mut Settings,
-    /// The open volume's name and size, for the middle of the bar.
-    pub title: String,
+    /// The open volume's name, and its voxels and their size, for the right end of the bar.
+    pub title: Option<Title>,
     /// What a step back changes, or one forward; `None` where there is none.
     pub step: &'a dyn Fn(bool) -> Option<String>,
     /// What is on screen.
@@ -42,6 +46,29 @@ pub(crate) struct Menu<'a> {
     pub frame_ms: &'a mut Option<f64>,
     /// What the user asks for.
     pub commands: &'a mut Vec<Command>,
+}
+
+/// What is written of the open volume.
+#[derive(Debug, Clone)]
+pub(crate) struct Title {
+    /// The volume's name.
+    pub name: String,
+    /// Its voxels, and their size.
+    pub facts: String,
+}
+
+impl Title {
+    /// Shows it in what is left of the bar: the facts are whole, and the middle of a long name is left out.
+    fn show(&self, ui: &mut egui::Ui) {
+        let facts = text::menu::title("", &self.facts);
+        let room = ui.available_width() - text_width(ui, &facts, &egui::TextStyle::Body);
+        let name = elide_middle(ui, &self.name, &egui::TextStyle::Body, room);
+        let words = egui::RichText::new(text::menu::title(&name, &self.facts)).weak();
+        let label = ui.add(egui::Label::new(words).truncate());
+        if name != self.name {
+            label.on_hover_text(&self.name);
+        }
+    }
 }
 
 /// Parts of the window that can be switched off.
@@ -84,7 +111,9 @@ pub(crate) fn show(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
             });
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 several(ui, menu);
-                ui.add(egui::Label::new(egui::RichText::new(&menu.title).weak()).truncate());
+                if let Some(title) = &menu.title {
+                    title.show(ui);
+                }
             });
         });
     });
@@ -139,6 +168,7 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
                 let whole = path.to_string_lossy();
                 let name = path.file_name().map(|name| name.to_string_lossy());
                 let name = plain(name.as_ref().unwrap_or(&whole), MAX_NAME);
+                let name = elide_middle(ui, &name, &egui::TextStyle::Button, LONGEST_NAME);
                 let picture = menu.recent_pictures.get(path, ui.ctx());
                 let button = match &picture {
                     Some(picture) => {
@@ -160,7 +190,8 @@ fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     ui.add_enabled_ui(!menu.earlier.is_empty(), |ui| {
         frame::scrolling_menu(ui, text::menu::EARLIER_LOOKS, |ui| {
             for run in menu.earlier {
-                if ui.button(recovery::name(run)).on_hover_text(&run.source).clicked() {
+                let name = elide_middle(ui, &recovery::name(run), &egui::TextStyle::Button, LONGEST_NAME);
+                if ui.button(name).on_hover_text(&run.source).clicked() {
                     menu.commands.push(Command::Open(run.look.clone()));
                 }
             }

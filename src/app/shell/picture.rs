@@ -1,6 +1,6 @@
 //! The middle of the window: the picture, pixel for pixel, and the mouse on it.
 
-use eframe::egui::{self, Role, Sense, Shape, WidgetInfo};
+use eframe::egui::{self, Rect, Role, Sense, Shape, WidgetInfo, pos2};
 
 use crate::app::App;
 use crate::app::common::commands::Command;
@@ -14,15 +14,16 @@ use crate::app::viewport::hints::Hints;
 use crate::app::viewport::light_handles::LightHandles;
 use crate::app::viewport::light_probe::{LightProbe, Pointing};
 use crate::app::viewport::orbit::Orbit;
+use crate::app::viewport::overlay::Overlay;
 use crate::app::viewport::overlay::ct_looks::CtLooks;
-use crate::app::viewport::overlay::{Overlay, crop_frame};
+use crate::app::viewport::overlay::export_marks::ExportMarks;
 use crate::app::viewport::turning::Turning;
 use crate::app::viewport::view_projection::ViewProjection;
 use crate::app::viewport::{Facts, Viewport, light_chips, light_probe, nothing_seen, orbit};
 use crate::app::windows::slices::Slices;
 use crate::gpu::GpuError;
-use crate::model::Settings;
 use crate::model::auto::Outline;
+use crate::model::{ImageSpec, Settings};
 
 /// What the picture is shown with.
 pub(crate) struct PictureInputs<'a> {
@@ -50,8 +51,10 @@ pub(crate) struct PictureInputs<'a> {
     pub turning: &'a mut Turning,
     /// Where the object ends, if that is known.
     pub outline: Option<&'a Outline>,
-    /// The shape of the picture that would be exported, while somebody is asked.
-    pub shape: Option<f64>,
+    /// The picture that would be exported, while somebody is asked.
+    pub shot: Option<ImageSpec>,
+    /// What would be written over it.
+    pub export_marks: &'a mut ExportMarks,
     /// Cuts through the data, and their cursor.
     pub slices: &'a mut Slices,
     /// What the first picture says.
@@ -84,7 +87,8 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
         orbit,
         turning,
         outline,
-        shape,
+        shot,
+        export_marks,
         slices,
         hints,
         ct_looks,
@@ -92,8 +96,16 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
         facts,
         commands,
     } = inputs;
-    let canvas = Canvas::within(ui.available_rect_before_wrap(), ui.pixels_per_point());
-    ui.allocate_rect(canvas.rect, Sense::hover());
+    let whole = Canvas::within(ui.available_rect_before_wrap(), ui.pixels_per_point());
+    ui.allocate_rect(whole.rect, Sense::hover());
+    let canvas = match shot {
+        // What is seen is what would be exported.
+        Some(ImageSpec { size: [width, height], .. }) => {
+            ui.painter().rect_filled(whole.rect, 0.0, ui.visuals().extreme_bg_color);
+            whole.of_shape(f64::from(width) / f64::from(height.max(1)), ui.pixels_per_point())
+        }
+        None => whole,
+    };
     // The borders of panels are taken from both of their sides.
     let inside = canvas.rect.shrink(BORDER);
     let mut response = ui.interact(inside, ui.scope_id().with("picture"), Sense::click_and_drag());
@@ -148,16 +160,22 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
     }
     // Two looks have words of their own at the top and at the bottom.
     let body = is_anatomical.then(|| compare.beside_words(ui, canvas.rect));
-    if is_one_view
-        && let Some(view) = overlay.show(ui, canvas.rect, &settings.camera, (&scene, has_unknown_scale), body)
-    {
-        commands.push(Command::LookFrom(view));
-    }
-    if overlay.on {
-        light_chips::show(ui, canvas.rect, settings, selected_light, facts, commands);
+    let chips =
+        overlay.on.then(|| light_chips::show(ui, canvas.rect, settings, selected_light, facts, commands));
+    if let Some(shot) = &shot {
+        // As it would be exported: with the marks of that picture, and none of the window.
+        if let Some(dataset) = viewport.dataset().filter(|_| is_one_view) {
+            export_marks.show(ui, canvas.rect, shot, settings, dataset.volume());
+        }
+    } else if is_one_view {
+        let body = body.map(|body| beside_chips(body, chips));
+        let scale = (&scene, has_unknown_scale);
+        if let Some(view) = overlay.show(ui, canvas.rect, &settings.camera, scale, body) {
+            commands.push(Command::LookFrom(view));
+        }
         // The first hints of all lie there.
-        if is_one_view && !hints.on {
-            ct_looks.show(ui, canvas.rect, settings, volume, commands);
+        if overlay.on && !hints.on {
+            ct_looks.show(ui, canvas.rect, volume, commands);
         }
     }
     if let Some(dataset) = viewport.dataset().filter(|_| probe.on && is_one_view) {
@@ -185,9 +203,6 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
         };
         viewport.advance(looks, canvas.size, ui.ctx())
     };
-    if let Some(shape) = shape {
-        crop_frame::show(ui, canvas.rect, &settings.camera, shape);
-    }
     hints.show(ui, canvas.rect, &response);
     let pictures = viewport.pictures();
     compare.ui(ui, canvas.rect, &pictures);
@@ -195,6 +210,20 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
         ui.painter_at(part).set(place, shape);
     }
     (canvas, result)
+}
+
+/// The part of the picture for letters of orientation, of which the upper one stands in the middle: below the chips of the
+/// lights where they reach that far.
+fn beside_chips(body: Rect, chips: Option<Rect>) -> Rect {
+    /// Points to both sides of the middle, for two letters.
+    const LETTERS: f32 = 20.0;
+    match chips {
+        Some(chips) if chips.right() > body.center().x - LETTERS => {
+            let top = body.top().max(chips.bottom()).min(body.center().y);
+            Rect::from_min_max(pos2(body.left(), top), body.max)
+        }
+        _ => body,
+    }
 }
 
 impl App {
@@ -214,7 +243,8 @@ impl App {
             orbit: &mut self.orbit,
             turning: &mut self.turning,
             outline: outline.as_deref(),
-            shape: self.export.shape().filter(|_| !self.layout.picture_only),
+            shot: self.export.asked().filter(|_| !self.layout.picture_only),
+            export_marks: &mut self.export_marks,
             slices: &mut self.slices,
             hints: &mut self.hints,
             ct_looks: &mut self.ct_looks,
@@ -240,5 +270,20 @@ impl App {
         {
             facts.follow(&dataset);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn letters_stand_beside_the_chips_of_lights() {
+        let body = Rect::from_min_max(pos2(0.0, 20.0), pos2(300.0, 220.0));
+        let chips = |right: f32| Some(Rect::from_min_max(pos2(8.0, 28.0), pos2(right, 52.0)));
+        assert_eq!(beside_chips(body, None), body);
+        assert_eq!(beside_chips(body, chips(120.0)), body, "they end left of the middle");
+        let below = beside_chips(body, chips(160.0));
+        assert_eq!((below.top(), below.bottom(), below.x_range()), (52.0, 220.0, body.x_range()));
     }
 }

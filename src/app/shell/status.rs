@@ -1,9 +1,10 @@
-//! The status bar: what is shown, on what, how fast, and what is being done.
+//! The status bar: what the user waits for, what was undone, and behind a click what pictures cost.
 
-use eframe::egui::{self, ProgressBar, RichText};
+use eframe::egui::{self, ProgressBar, RichText, TextStyle};
 
 use super::messages::Messages;
 use crate::app::common::commands::Command;
+use crate::app::common::elide::elide_middle;
 use crate::app::common::theme;
 use crate::app::text;
 use crate::app::viewport::{Doing, Facts};
@@ -14,37 +15,44 @@ use crate::data::plain;
 /// Characters of a path in the bar: more than the widest screen shows.
 const LONGEST_PATH: usize = 500;
 
-/// Shows the bar. `went`: the last step back or forward.
+/// Points of the last step back or forward: a name of a light may be long.
+const LONGEST_STEP: f32 = 260.0;
+
+/// Points for the buttons at the right of the bar.
+const BUTTONS: f32 = 200.0;
+
+/// What the status bar shows.
+pub(crate) struct Status<'a> {
+    /// What is known of the renderer's work.
+    pub facts: &'a Facts,
+    /// A volume that is being opened.
+    pub opening: Option<LoadProgress<'a>>,
+    /// An export whose window is closed.
+    pub exporting: Option<Unseen>,
+    /// What else is being made, and is waited for.
+    pub making: Option<&'static str>,
+    /// The last step back or forward.
+    pub went: Option<&'a str>,
+}
+
+/// Shows the bar.
 pub(crate) fn show(
     ui: &mut egui::Ui,
-    facts: &Facts,
-    opening: Option<LoadProgress<'_>>,
-    exporting: Option<Unseen>,
-    went: Option<&str>,
+    status: Status<'_>,
     messages: &mut Messages,
     commands: &mut Vec<Command>,
 ) {
+    let Status { facts, opening, exporting, making, went } = status;
     egui::Panel::bottom("status").resizable(false).frame(theme::panel(ui)).show(ui, |ui| {
         ui.horizontal(|ui| {
-            if let Some(LoadProgress { source, reading: _, phase, fraction, bytes }) = opening {
-                match fraction {
-                    Some(share) => ui.add(ProgressBar::new(share).desired_width(120.0).desired_height(8.0)),
-                    // A bar that stays empty looks stuck.
-                    None => ui.spinner(),
-                };
-                ui.label(text::status::opening(
-                    phase,
-                    bytes,
-                    &plain(&source.to_string_lossy(), LONGEST_PATH),
-                ));
-                if ui.small_button(&*Command::CancelOpening.label()).clicked() {
-                    commands.push(Command::CancelOpening);
-                }
+            if let Some(opening) = opening {
+                progress_of_opening(ui, &opening, commands);
             } else {
-                doing(ui, facts.doing);
+                doing(ui, facts.doing, making);
                 if let Some(went) = went {
                     ui.separator();
-                    let link = ui.add(egui::Link::new(RichText::new(went).weak()));
+                    let words = elide_middle(ui, went, &TextStyle::Body, LONGEST_STEP);
+                    let link = ui.add(egui::Link::new(words));
                     if link.on_hover_text(text::status::WENT_TIP).clicked() {
                         commands.push(Command::ToggleHistory);
                     }
@@ -54,19 +62,35 @@ pub(crate) fn show(
                 export(ui, exporting, commands);
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                // All that was said, for who was not quick enough.
-                if messages.count() > 0 {
-                    let button = ui.small_button(text::messages::count(messages.count()));
+                figures(ui, facts);
+                let (count, left) = messages.unread();
+                if count > 0 {
+                    ui.ctx().request_repaint_after(left);
+                    let button = ui.small_button(text::messages::count(count));
                     if button.on_hover_text(text::messages::LIST_TIP).clicked() {
                         messages.lists ^= true;
                     }
                 }
-                let figures = figures(facts);
-                let tip = format!("{figures}\n{}", facts.driver);
-                ui.add(egui::Label::new(RichText::new(figures).weak()).truncate()).on_hover_text(tip);
             });
         });
     });
+}
+
+/// How far a volume is that is being opened.
+fn progress_of_opening(ui: &mut egui::Ui, opening: &LoadProgress<'_>, commands: &mut Vec<Command>) {
+    let &LoadProgress { source, reading: _, phase, fraction, bytes } = opening;
+    match fraction {
+        Some(share) => ui.add(ProgressBar::new(share).desired_width(120.0).desired_height(8.0)),
+        // A bar that stays empty looks stuck.
+        None => ui.spinner(),
+    };
+    let words = text::status::opening(phase, bytes, &plain(&source.to_string_lossy(), LONGEST_PATH));
+    let room = ui.available_width() - BUTTONS;
+    let response = ui.label(elide_middle(ui, &words, &TextStyle::Body, room));
+    response.on_hover_text(words);
+    if ui.small_button(&*Command::CancelOpening.label()).clicked() {
+        commands.push(Command::CancelOpening);
+    }
 }
 
 /// How far an export is, whose window may be closed.
@@ -89,32 +113,55 @@ fn export(ui: &mut egui::Ui, Unseen { done, total, left }: Unseen, commands: &mu
     }
 }
 
-fn figures(facts: &Facts) -> String {
-    text::status::figures(&text::status::Figures {
-        full_ms: facts.full_ms,
-        preview_ms: facts.preview_ms,
-        splats: facts.splats,
-        cached_light_volumes: facts.cached_light_volumes,
-        light_rebuilds: facts.light_rebuilds,
-        gpu_mebibytes: facts.gpu_mebibytes,
-        adapter: &facts.adapter,
-        is_software: facts.software,
-    })
+/// The button behind which it says how fast pictures are made, with how much memory, and on what.
+fn figures(ui: &mut egui::Ui, facts: &Facts) {
+    let named = text::status::PERFORMANCE;
+    let button = ui.small_button(named.name);
+    egui::Popup::menu(&button).close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside).show(|ui| {
+        ui.strong(named.name);
+        egui::Grid::new("performance").num_columns(2).show(ui, |ui| {
+            for (name, value) in text::status::figures(&text::status::Figures {
+                full_ms: facts.full_ms,
+                preview_ms: facts.preview_ms,
+                splats: facts.splats,
+                cached_light_volumes: facts.cached_light_volumes,
+                light_rebuilds: facts.light_rebuilds,
+                gpu_mebibytes: facts.gpu_mebibytes,
+                adapter: &facts.adapter,
+                driver: &facts.driver,
+                is_software: facts.software,
+            }) {
+                ui.weak(name);
+                ui.label(value);
+                ui.end_row();
+            }
+        });
+    });
+    button.on_hover_text(named.tip);
 }
 
-fn doing(ui: &mut egui::Ui, doing: Doing) {
-    match doing {
-        Doing::Nothing => ui.weak(text::status::NO_VOLUME),
-        Doing::FullQuality => ui.label(text::status::FULL_QUALITY),
-        Doing::Preview => ui.label(RichText::new(text::status::PREVIEW).color(theme::accent(ui.visuals()))),
-        Doing::Refining(what, share) => {
+/// What is on screen, or what it waits for.
+fn doing(ui: &mut egui::Ui, doing: Doing, making: Option<&'static str>) {
+    match (doing, making) {
+        (Doing::Refining(what, share), _) => {
             let bar = ProgressBar::new(share).desired_width(80.0).desired_height(8.0);
             ui.add(bar.fill(theme::ACCENT));
             ui.label(text::status::refining(share, what))
         }
-        Doing::Failed => {
+        (Doing::Failed, _) => {
             ui.label(RichText::new(text::status::NOT_RENDERED).color(ui.visuals().error_fg_color))
         }
-        Doing::Lost => ui.label(RichText::new(text::status::DEVICE_LOST).color(ui.visuals().error_fg_color)),
+        (Doing::Lost, _) => {
+            ui.label(RichText::new(text::status::DEVICE_LOST).color(ui.visuals().error_fg_color))
+        }
+        (_, Some(making)) => {
+            ui.spinner();
+            ui.label(making)
+        }
+        (Doing::Nothing, None) => ui.weak(text::status::NO_VOLUME),
+        (Doing::FullQuality, None) => ui.label(text::status::SHARP),
+        (Doing::Preview, None) => {
+            ui.label(RichText::new(text::status::PREVIEW).color(theme::accent(ui.visuals())))
+        }
     };
 }

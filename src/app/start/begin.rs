@@ -31,6 +31,7 @@ use crate::app::viewport::light_probe::LightProbe;
 use crate::app::viewport::orbit::Orbit;
 use crate::app::viewport::overlay::Overlay;
 use crate::app::viewport::overlay::ct_looks::CtLooks;
+use crate::app::viewport::overlay::export_marks::ExportMarks;
 use crate::app::viewport::turning::Turning;
 use crate::app::windows::chooser::Chooser;
 use crate::app::windows::contact_sheet::ContactSheet;
@@ -85,7 +86,12 @@ impl App {
         app.session = session.map(Session::named);
         app.adjust = adjust;
         app.trusts_paths = trust_paths;
-        app.open_first(source.as_deref(), volume.as_deref(), &cc.egui_ctx);
+        let is_named = source.is_some() || volume.is_some() || app.session.is_some();
+        if is_named || !app.recovery.asks() {
+            app.open_first(source.as_deref(), volume.as_deref(), &cc.egui_ctx);
+        } else {
+            app.first_waits = true;
+        }
         Ok(app)
     }
 
@@ -105,7 +111,11 @@ impl App {
             Quality::Fast.apply(&mut settings);
             settings
         }));
-        app.open_first(None, None, &cc.egui_ctx);
+        if app.recovery.asks() {
+            app.first_waits = true;
+        } else {
+            app.open_first(None, None, &cc.egui_ctx);
+        }
         Ok(app)
     }
 
@@ -152,6 +162,7 @@ impl App {
             session_is_due: false,
             session: None,
             recovery: Recovery::default(),
+            first_waits: false,
             quit: Quit::default(),
             lost_again: LostAgain::default(),
             adjust: None,
@@ -161,6 +172,7 @@ impl App {
             cut_handles: CutHandles::default(),
             compare: Compare::default(),
             overlay: Overlay::default(),
+            export_marks: ExportMarks::default(),
             orbit: Orbit::default(),
             turning: Turning::default(),
             probe: LightProbe::default(),

@@ -58,6 +58,14 @@ pub(crate) fn reset(label: &str) -> String {
 }
 
 /// The tip of a button that puts a value back.
-pub(crate) fn reset_tip(label: &str) -> String {
-    reset(&label.to_lowercase())
+pub(crate) fn reset_to(value: &str) -> String {
+    format!("Reset to {value}")
+}
+
+/// What is put back that is no number.
+pub(crate) const FIRST_LOOK: &str = "the first look";
+
+/// The tip of the button that puts a section back.
+pub(crate) fn reset_to_first_look(section: &str) -> String {
+    format!("{} to {FIRST_LOOK}", reset(section))
 }

@@ -1,26 +1,27 @@
-//! The strip of kept views and looks.
+//! The strip of saved views and looks.
 
 use super::shell::commands::{recall_view_keys, store_view_keys};
 use super::{Named, named};
 
-pub(crate) const NOTHING: &str = "Nothing is kept yet: a view is where you look from, a look is how it looks";
-pub(crate) const KEEP_VIEW: Named = named("+ View", "Keep where you look from");
+pub(crate) const NOTHING: &str =
+    "No saved views or looks yet. A view is a camera position, a look is everything else";
+pub(crate) const KEEP_VIEW: Named = named("+ View", "Save the camera position");
 pub(crate) const KEEP_LOOK: Named =
-    named("+ Look", "Keep how it looks: transfer function, lights, shadows, cuts and the rest");
+    named("+ Look", "Save transfer function, lights, shadows, cuts and the rest");
 pub(crate) const SHEET: Named = named("Contact sheet…", "Write all of them into one picture");
-pub(crate) const CLOSE: Named = named("Close", "Hide the strip; what is kept stays");
+pub(crate) const CLOSE: Named = named("Close", "Hide the strip; saved views and looks stay");
 
 pub(crate) const NAME: &str = "Name";
-pub(crate) const REPLACE: Named =
-    named("Replace with the present one", "Keep what is shown now in its place");
-pub(crate) const WITH_VIEW: Named = named("Go to it with its view", "Also look from where it was kept");
+pub(crate) const REPLACE: Named = named("Replace with current", "Save what is shown now in its place");
+pub(crate) const WITH_VIEW: Named =
+    named("Go to it with its view", "Also take the camera position of that time");
 pub(crate) const COMPARE: Named =
     named("Compare with the picture", "Left of a divider the picture, right of it this view or look");
 pub(crate) const MARK: Named =
     named("Mark to compare", "Two that are marked are compared; Ctrl (⌘ on a Mac) and a click does the same");
-pub(crate) const REMOVE: Named = named("Remove", "It is kept no longer");
+pub(crate) const REMOVE: Named = named("Remove", "Delete it from the list");
 pub(crate) const DIGIT: &str = "Key";
-pub(crate) const NO_ROOM: &str = "There is no room for it: at most 32 views and looks are kept, and a table of a thousand labels is too much for one";
+pub(crate) const NO_ROOM: &str = "There is no room for it: at most 32 views and looks are saved, and a table of a thousand labels is too much for one";
 
 /// What a small picture is called.
 pub(crate) fn go_to(name: &str) -> String {
@@ -51,17 +52,17 @@ pub(crate) fn look_name(number: usize) -> String {
 
 /// A view or look is kept.
 pub(crate) fn kept(name: &str) -> String {
-    format!("{name} is kept in the strip below the picture")
+    format!("Saved {name} in the strip below the picture")
 }
 
 /// A view is kept under a digit.
 pub(crate) fn view_kept(digit: u8) -> String {
-    format!("View {digit} is kept: {} looks that way again", recall_view_keys(digit))
+    format!("Saved view {digit}: {} looks that way again", recall_view_keys(digit))
 }
 
 /// Nothing is kept under a digit.
 pub(crate) fn nothing_under(digit: u8) -> String {
-    format!("Nothing is kept under {digit}: {} keeps a view there", store_view_keys(digit))
+    format!("Nothing is saved under {digit}: {} saves a view there", store_view_keys(digit))
 }
 
 /// How many pictures are still made.

@@ -262,8 +262,7 @@ impl TransferEditor {
         }
         if let Some(at) = response.interact_pointer_pos() {
             let (value, opacity) = axes.values(at);
-            let index = function.insert_on_curve(value);
-            function.points[index].opacity = opacity;
+            let index = function.add_point(value, opacity, axes.range);
             self.selection.only(index);
         }
     }

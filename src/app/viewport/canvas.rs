@@ -1,6 +1,6 @@
 //! Where the picture is: a rectangle on the grid of the screen's pixels.
 
-use eframe::egui::{Rect, pos2};
+use eframe::egui::{Rect, pos2, vec2};
 
 /// The picture's rectangle in points and its size in physical pixels, on the pixel grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -9,7 +9,12 @@ pub(crate) struct Canvas {
     pub rect: Rect,
     /// In physical pixels.
     pub size: [u32; 2],
+    /// The size, in physical pixels, of what the picture would fill if its shape were free.
+    pub room: [u32; 2],
 }
+
+/// Shapes that differ by less look the same.
+const ALIKE: f64 = 0.01;
 
 impl Canvas {
     /// The largest rectangle on the pixel grid within another.
@@ -19,13 +24,30 @@ impl Canvas {
         let down = |x: f32| (x * pixels_per_point + 0.01).floor();
         let (left, top) = (up(rect.min.x), up(rect.min.y));
         let (right, bottom) = (down(rect.max.x).max(left), down(rect.max.y).max(top));
+        let size = [(right - left) as u32, (bottom - top) as u32];
         Self {
             rect: Rect::from_min_max(
                 pos2(left, top) / pixels_per_point,
                 pos2(right, bottom) / pixels_per_point,
             ),
-            size: [(right - left) as u32, (bottom - top) as u32],
+            size,
+            room: size,
         }
+    }
+
+    /// The largest one in the middle of this that has a shape (width over height).
+    pub(crate) fn of_shape(self, shape: f64, pixels_per_point: f32) -> Self {
+        let here = f64::from(self.rect.width()) / f64::from(self.rect.height().max(1.0));
+        if (here / shape - 1.0).abs() < ALIKE {
+            return self;
+        }
+        let size = if here > shape {
+            vec2((f64::from(self.rect.height()) * shape) as f32, self.rect.height())
+        } else {
+            vec2(self.rect.width(), (f64::from(self.rect.width()) / shape) as f32)
+        };
+        let part = Rect::from_center_size(self.rect.center(), size);
+        Self { room: self.room, ..Self::within(part, pixels_per_point) }
     }
 }
 
@@ -44,6 +66,12 @@ mod tests {
             }
             let width = canvas.rect.width() * pixels_per_point;
             assert!((width - canvas.size[0] as f32).abs() < 1e-3);
+        }
+        let whole = Canvas::within(Rect::from_min_size(pos2(10.0, 20.0), vec2(800.0, 400.0)), 2.0);
+        for (shape, size) in [(2.001, [1600, 800]), (1.0, [800, 800]), (4.0, [1600, 400])] {
+            let part = whole.of_shape(shape, 2.0);
+            assert_eq!((part.size, part.room), (size, [1600, 800]));
+            assert_eq!(part.rect.center(), whole.rect.center());
         }
         assert_eq!(Canvas::within(Rect::from_min_max(pos2(5.0, 5.0), pos2(4.0, 5.0)), 1.0).size, [0, 0]);
     }

@@ -148,6 +148,11 @@ impl Viewport {
         self.thread.figures().light_rebuilds
     }
 
+    /// How many pictures at full quality were made after previews.
+    pub(in crate::app) fn refinements(&self) -> u64 {
+        self.thread.figures().refinements
+    }
+
     fn doing(&self, looks: &Looks, refining: Option<(Stage, f32)>) -> Doing {
         if self.lost {
             Doing::Lost

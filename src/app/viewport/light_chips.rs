@@ -4,15 +4,16 @@ use eframe::egui::{self, Rect, Sense, Ui, UiBuilder, vec2};
 
 use super::Facts;
 use crate::app::common::commands::Command;
+use crate::app::common::elide::elide_middle;
 use crate::app::common::light_keys::solo;
 use crate::app::common::theme;
 use crate::app::text;
 use crate::model::{Light, MAX_LIGHTS, Settings};
 
-/// Width of a name: longer ones are cut, and whole in the chip's tip.
+/// Width of a name: of longer ones the middle is left out, and they are whole in the chip's tip.
 const LONGEST_NAME: f32 = 140.0;
 
-/// Shows the chips.
+/// Shows the chips. Where they are.
 pub(crate) fn show(
     ui: &mut Ui,
     picture: Rect,
@@ -20,12 +21,12 @@ pub(crate) fn show(
     selected: &mut usize,
     facts: &Facts,
     commands: &mut Vec<Command>,
-) {
+) -> Rect {
     let area =
         Rect::from_min_size(picture.min + vec2(8.0, 8.0), vec2((picture.width() - 130.0).max(80.0), 24.0));
     let mut ui = ui.new_child(UiBuilder::new().max_rect(area).id_salt("light chips"));
     ui.set_clip_rect(picture);
-    ui.horizontal_wrapped(|ui| {
+    let shown = ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(5.0, 5.0);
         let mut alone = None;
         for at in 0..settings.lights.len() {
@@ -60,7 +61,10 @@ pub(crate) fn show(
                 commands.push(Command::AddLight);
             }
         }
+        // The row itself is as wide as it may become.
+        ui.min_rect()
     });
+    shown.inner
 }
 
 fn fill(selected: bool) -> egui::Color32 {
@@ -76,9 +80,8 @@ fn chip(ui: &mut Ui, light: &Light, selected: bool) -> egui::Response {
         (false, true) => theme::EYE_CURVE,
         (false, false) => theme::GUIDE.gamma_multiply(0.6),
     };
-    let mut job = egui::text::LayoutJob::simple_singleline(name.to_owned(), font, ink);
-    job.wrap = egui::text::TextWrapping::truncate_at_width(LONGEST_NAME);
-    let galley = ui.painter().layout_job(job);
+    let shown = elide_middle(ui, name, &egui::TextStyle::Button, LONGEST_NAME);
+    let galley = ui.painter().layout_no_wrap(shown, font, ink);
     let size = vec2(galley.size().x + 30.0, 20.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let spoken = text::lights::chip(name, light.on);

@@ -146,7 +146,12 @@ impl Viewport {
         self.waiting.clear();
     }
 
-    /// Asks for the balance of a look of the volume, which is measured when its picture is finished.
+    /// Lets the picture at full quality wait while the look is about to change by itself.
+    pub(super) fn hold_refinement(&self, holds: bool) {
+        self.thread.hold_refinement(holds);
+    }
+
+    /// Asks for the balance of a look of the volume, which is measured when its light volumes are filled.
     pub(super) fn measure_balance(&mut self, settings: &Settings) {
         self.measurement = Some(self.thread.measure_balance(settings));
     }
@@ -200,12 +205,15 @@ impl Viewport {
 
     /// Whether the full-quality picture of these settings is on screen, and that of those they are compared with.
     pub(super) fn is_idle(&self, looks: &Looks) -> bool {
-        let (Some(dataset), Some((shown, quality))) = (&self.dataset, &self.shown) else { return false };
+        let is_full = self.shown.as_ref().is_some_and(|(_, quality)| *quality == QualityLevel::FULL);
+        is_full && self.fading.is_none() && self.shows(looks)
+    }
+
+    /// Whether a picture of these settings is on screen, a preview or not.
+    pub(super) fn shows(&self, looks: &Looks) -> bool {
+        let (Some(dataset), Some((shown, _))) = (&self.dataset, &self.shown) else { return false };
         let request = FrameRequest::new(self.generation, dataset, looks.clone(), shown.size);
-        *quality == QualityLevel::FULL
-            && self.fading.is_none()
-            && *shown == request
-            && self.frame_request.as_ref().is_some_and(|requested| requested == shown)
+        *shown == request && self.frame_request.as_ref().is_some_and(|requested| requested == shown)
     }
 
     /// Asks the render thread for looks and takes what it has finished. To be called once per frame

@@ -52,6 +52,11 @@ impl ForeignPath {
         self.asked = Some(Asked { record, path: None, shown: plain(named, LONGEST_PATH), why });
     }
 
+    /// Whether it is being asked.
+    pub(crate) fn asks(&self) -> bool {
+        self.asked.is_some()
+    }
+
     /// The look that was asked about, and what it says of its volume; the window closes.
     pub(crate) fn take(&mut self) -> Option<(Record, Option<PathBuf>)> {
         self.asked.take().map(|asked| (asked.record, asked.path))

@@ -48,6 +48,11 @@ impl Recovery {
         Self { offers: offers.collect() }
     }
 
+    /// Whether an answer is waited for.
+    pub(crate) fn asks(&self) -> bool {
+        !self.offers.is_empty()
+    }
+
     /// Shows the window while there is something to offer. Gives the answer, once.
     pub(crate) fn ui(&mut self, ctx: &egui::Context) -> Option<Answer> {
         if self.offers.is_empty() {
@@ -56,7 +61,8 @@ impl Recovery {
         let mut answer = None;
         let mut open = true;
         let window = egui::Window::new(text::memory::ENDED_BADLY).open(&mut open);
-        let window = window.collapsible(false).resizable(false).default_pos([60.0, 70.0]);
+        let window = window.collapsible(false).resizable(false);
+        let window = window.pivot(egui::Align2::CENTER_CENTER).default_pos(ctx.content_rect().center());
         let window = window.constrain_to(frame::room(ctx));
         window.show(ctx, |ui| {
             ui.label(text::memory::ENDED_BADLY_WHY);

@@ -41,6 +41,10 @@ pub(super) struct Agenda {
     pub is_closed: bool,
     frame_request: Option<FrameRequest>,
     changed: Instant,
+    /// The look is about to change by itself.
+    holds_refinement: bool,
+    /// What was refined as far as light volumes go, while that was so.
+    prepared: Option<FrameRequest>,
     /// A picture was published, and the window had not taken it when the mailbox was looked at last.
     is_frame_pending: bool,
     /// What is on screen, or on its way there.
@@ -58,6 +62,8 @@ impl Agenda {
             is_closed: false,
             frame_request: None,
             changed: Instant::now(),
+            holds_refinement: false,
+            prepared: None,
             is_frame_pending: false,
             shown: None,
             failed: None,
@@ -67,6 +73,7 @@ impl Agenda {
     /// Takes note of what the window requests now.
     pub(super) fn read(&mut self, mailbox: &mut Mailbox) {
         self.is_closed = mailbox.closed;
+        self.holds_refinement = mailbox.holds_refinement;
         if let Some(scene) = mailbox.scene.take() {
             (self.next_scene, self.next_dataset) = (Some(scene), None);
             self.frame_request = None;
@@ -88,20 +95,20 @@ impl Agenda {
 
     /// Whether the window has left something that was not read.
     pub(super) fn has_news(&self, mailbox: &Mailbox) -> bool {
-        mailbox.has_news(self.is_frame_pending)
+        mailbox.has_news(self.is_frame_pending) || mailbox.holds_refinement != self.holds_refinement
     }
 
     /// The scene that replaces the one that is worked on, once: nothing of it is on screen.
     pub(super) fn take_scene(&mut self) -> Option<Scene> {
         let scene = self.next_scene.take()?;
-        (self.shown, self.failed) = (None, None);
+        (self.shown, self.failed, self.prepared) = (None, None, None);
         Some(scene)
     }
 
     /// The volume that replaces the one that is worked on, once: nothing of it is on screen.
     pub(super) fn take_dataset(&mut self) -> Option<Dataset> {
         let dataset = self.next_dataset.take()?;
-        (self.shown, self.failed) = (None, None);
+        (self.shown, self.failed, self.prepared) = (None, None, None);
         Some(dataset)
     }
 
@@ -112,12 +119,23 @@ impl Agenda {
         self.is_closed || self.next_scene.is_some() || self.next_dataset.is_some() || is_other
     }
 
+    /// Whether a picture is to wait until the look has changed: its light volumes are filled meanwhile.
+    pub(super) fn is_held(&self, purpose: Purpose) -> bool {
+        purpose == Purpose::Refinement && self.holds_refinement
+    }
+
+    /// All is there that a picture needs before it is drawn.
+    pub(super) fn prepare(&mut self, frame_request: FrameRequest) {
+        self.prepared = Some(frame_request);
+    }
+
     /// When the next picture is to be made.
     pub(super) fn due(&self) -> Due {
         let Some(frame_request) = &self.frame_request else { return Due::WithNews };
         let shown = self.shown.as_ref().filter(|(shown, _)| shown == frame_request);
         let is_finished = shown.is_some_and(|(_, quality)| *quality == QualityLevel::FULL);
-        if is_finished || self.failed.as_ref() == Some(frame_request) {
+        let waits = shown.is_some() && self.holds_refinement && self.prepared.as_ref() == Some(frame_request);
+        if is_finished || waits || self.failed.as_ref() == Some(frame_request) {
             return Due::WithNews;
         }
         let rest = REST.saturating_sub(self.changed.elapsed());

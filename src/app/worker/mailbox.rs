@@ -46,6 +46,8 @@ pub(crate) struct Figures {
     pub(crate) dark_share: Option<f64>,
     /// The last picture, or the left one of two, shows nothing of the volume.
     pub(crate) shows_nothing: bool,
+    /// Pictures at full quality that were made after previews.
+    pub(crate) refinements: u64,
     /// A refinement under way: what is done now, and the share that is done.
     pub(crate) refining: Option<(Stage, f32)>,
 }
@@ -71,6 +73,8 @@ pub(crate) struct Mailbox {
     pub(crate) frame: Option<Frame>,
     pub(crate) error: Option<GpuError>,
     pub(crate) figures: Figures,
+    /// The look is about to change by itself: refinements stop when light volumes are filled, before the picture is drawn.
+    pub(crate) holds_refinement: bool,
     /// Waits until pictures leave time for it.
     pub(crate) measurement: Option<Measurement>,
     /// The balance of the last measurement, and which one that was.

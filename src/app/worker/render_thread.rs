@@ -90,6 +90,15 @@ impl RenderThread {
         id
     }
 
+    /// Whether the look is about to change by itself: until then, nothing is drawn at full quality.
+    pub(crate) fn hold_refinement(&self, holds: bool) {
+        let mut mailbox = self.shared.mailbox();
+        if mailbox.holds_refinement != holds {
+            mailbox.holds_refinement = holds;
+            self.shared.changed.notify_one();
+        }
+    }
+
     /// The balance of a measurement, once.
     pub(crate) fn take_balance(&self, id: u64) -> Option<Result<f64, GpuError>> {
         let measured = self.shared.mailbox().measured.take_if(|(measured, _)| *measured == id);

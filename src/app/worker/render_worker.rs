@@ -235,6 +235,12 @@ impl RenderWorker {
         }
         loop {
             let stage = job.stage();
+            if self.agenda.is_held(*purpose) && matches!(stage, Some(Stage::Eye | Stage::Display)) {
+                // What the volume and lights need is kept.
+                self.agenda.prepare(frame_request.clone());
+                self.shared.mailbox().figures.refining = None;
+                return Ok(None);
+            }
             let start = Instant::now();
             let more = job.step()?;
             context.wait()?;
@@ -302,7 +308,7 @@ impl RenderWorker {
 
     /// Leaves what is complete in the mailbox.
     fn publish(&mut self, scene: &Scene, task: Task, left: Made, right: Option<Made>) {
-        let Task { frame_request, quality, .. } = task;
+        let Task { frame_request, purpose, quality } = task;
         let Made { image, dataset, shows_nothing, request, total_ms } = left;
         let total_ms = right.as_ref().map_or(total_ms, |right| right.total_ms);
         let other = right.map(|right| {
@@ -315,6 +321,7 @@ impl RenderWorker {
         let figures = &mut mailbox.figures;
         let time = if quality == QualityLevel::FULL { &mut figures.full_ms } else { &mut figures.preview_ms };
         *time = Some(total_ms);
+        figures.refinements += u64::from(purpose == Purpose::Refinement);
         figures.light_rebuilds = renderer.light_rebuilds().iter().sum();
         figures.cached_light_volumes = renderer.cached_light_volumes();
         figures.light_bytes = renderer.light_bytes();

@@ -25,20 +25,27 @@ fn letter_height([width, height]: [u32; 2]) -> f64 {
 
 /// What is to be laid over a picture of a volume.
 pub fn marks(shot: &ImageSpec, settings: &Settings, volume: &Volume) -> Layer {
+    marks_of_size(shot, shot.size, settings, volume)
+}
+
+/// What is to be laid over a picture of a volume, over a copy of it that has another number of pixels, and looks the same.
+pub fn marks_of_size(shot: &ImageSpec, size: [u32; 2], settings: &Settings, volume: &Volume) -> Layer {
     let mut layer = Layer::default();
-    let letters = letter_height(shot.size);
+    let scale = f64::from(size[1]) / f64::from(shot.size[1].max(1));
+    let letters = letter_height(shot.size) * scale;
+    let size = size.map(f64::from);
     if shot.marks.scale_bar {
-        let [width, height] = shot.size.map(f64::from);
+        let [width, height] = size;
         let mm_per_pixel = settings.camera.pixel_at_target(width, height) * volume.scene().mm_per_unit;
         if let Some(bar) = scale_bar(mm_per_pixel * width, volume.has_unknown_scale()) {
             bar.draw(&mut layer, bar.length_mm / mm_per_pixel, [width, height], letters);
         }
     }
     if shot.marks.letters && volume.is_anatomical() {
-        sides::draw(&mut layer, &settings.camera, shot.size.map(f64::from), letters);
+        sides::draw(&mut layer, &settings.camera, size, letters);
     }
     if shot.marks.legend {
-        legend::draw(&mut layer, settings, volume, shot.size.map(f64::from), letters);
+        legend::draw(&mut layer, settings, volume, size, letters);
     }
     layer
 }
@@ -134,6 +141,33 @@ mod tests {
         assert!(left > 250 && right < 400 && top > 40 && bottom < 290, "{left} {top} {right} {bottom}");
         // Nobody knows which side of a chair is its right one.
         assert_eq!(written(Marks { letters: true, ..Marks::default() }), None);
+    }
+
+    #[test]
+    fn marks_over_a_smaller_copy_lie_where_they_do_over_the_picture() {
+        let volume = builtin("chair", Some(16)).unwrap();
+        let settings = first_settings(&volume, &Histogram::of(&volume));
+        let marks = Marks { scale_bar: true, legend: true, ..Marks::default() };
+        let shot = ImageSpec { marks, ..ImageSpec::new([1600, 1200]) };
+        // Shares of the picture that are written over.
+        let written = |size: [u32; 2]| {
+            let mut rows = Rows::Bytes(vec![0; (size[0] * size[1] * 4) as usize]);
+            let layer = super::marks_of_size(&shot, size, &settings, &volume);
+            layer.lay_over(&ImageSpec { size, ..shot }, 0, &mut rows);
+            let Rows::Bytes(shown) = rows else { unreachable!() };
+            let [width, height] = size.map(f64::from);
+            let inked = shown.chunks(4).enumerate().filter(|(_, pixel)| pixel[3] > 0);
+            let places = inked.map(|(at, _)| {
+                [f64::from(at as u32 % size[0]) / width, f64::from(at as u32 / size[0]) / height]
+            });
+            places.fold([1.0, 1.0, 0.0, 0.0], |all: [f64; 4], [x, y]| {
+                [all[0].min(x), all[1].min(y), all[2].max(x), all[3].max(y)]
+            })
+        };
+        let (whole, copy) = (written([1600, 1200]), written([400, 300]));
+        for (whole, copy) in whole.into_iter().zip(copy) {
+            assert!((whole - copy).abs() < 0.02, "{whole} {copy}");
+        }
     }
 
     #[test]

@@ -3,6 +3,7 @@
 //! Opacity is per opacity unit (a length in `Settings`): the extinction is
 //! μ = −ln(1 − opacity) / unit, so that the look does not depend on the slab thickness (P eq. 6).
 
+mod added_point;
 pub(super) mod baked;
 pub(super) mod categories;
 pub(super) mod color_map;

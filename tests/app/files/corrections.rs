@@ -203,7 +203,7 @@ fn a_look_that_is_kept_and_lengths_go_along() {
     let ctx = harness.ctx.clone();
     harness.get_by_label("File").click();
     harness.run_steps(6);
-    click(&mut harness, "Next file with this look");
+    click(&mut harness, "Keep look for next file");
     harness.state_mut().open(&other, &ctx);
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("b") && app.is_idle());
     let kept = settings(&harness);

@@ -28,7 +28,7 @@ fn exports_are_what_the_renderer_makes() {
     let before = std::fs::read(&exported).unwrap();
     click(&mut harness, "Export");
     harness.run_steps(2);
-    assert!(harness.query_by_label("window.png is there already. Replace it?").is_some());
+    assert!(harness.query_by_label("window.png already exists. Replace it?").is_some());
     assert!(!harness.state().is_exporting() && std::fs::read(&exported).unwrap() == before);
     click(&mut harness, "Replace");
     wait_until(&mut harness, "never exported", |app| !app.is_exporting());

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use chiaroscuro::app::{App, Options};
-use chiaroscuro::model::{Record, VolumeRecord};
+use chiaroscuro::model::{Record, Settings, VolumeRecord};
 use eframe::egui::{self, Modifiers, Vec2, ViewportEvent, ViewportId};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{SCENE, click, kept_look, wait_until, window, window_with};
+use crate::harness::{SCENE, click, kept_look, untouched_window, wait_until, window, window_with};
 
 /// A window with a session file, whose look has been changed, and Ctrl+S pressed.
 fn changed_and_saved(session: &Path) -> Harness<'static, App> {
@@ -114,6 +114,34 @@ fn a_run_that_was_cut_off_is_offered() {
     assert!(file.exists(), "and it stays");
     drop(harness);
     assert_eq!(kept_look(folder.path()).expect("a look").shadows.gain, 1.75);
+}
+
+/// Nothing is opened behind the question about the last session.
+#[test]
+fn the_question_about_the_last_session_comes_first() {
+    for (answer, gain) in [("Not now", None), ("Reopen", Some(1.75))] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut look = Settings::default();
+        look.shadows.gain = 1.75;
+        std::fs::create_dir(folder.path().join("runs")).unwrap();
+        let file = folder.path().join("runs/0000000000001-1-0.json");
+        let volume = VolumeRecord::new(Path::new("builtin:sphere:16"), 0, None);
+        std::fs::write(&file, Record::text(&look, Some(&volume), None)).unwrap();
+        std::fs::write(file.with_extension("lock"), "").unwrap();
+        let options = Options { storage: Some(folder.path().to_owned()), ..Options::default() };
+        let mut harness = untouched_window(options);
+        harness.run_steps(30);
+        assert!(harness.query_by_label("Reopen the last session?").is_some());
+        assert!(harness.query_by_label_contains("chair").is_none(), "nothing is being opened");
+        assert_eq!(harness.state().volume_name(), None);
+        click(&mut harness, answer);
+        wait_until(&mut harness, "never opened", |app| app.volume_name().is_some());
+        let name = if gain.is_some() { "sphere" } else { "chair" };
+        assert_eq!(harness.state().volume_name(), Some(name));
+        if let Some(gain) = gain {
+            assert_eq!(harness.state().settings().shadows.gain, gain);
+        }
+    }
 }
 
 #[test]

@@ -1,11 +1,13 @@
 //! Controls in the panels, and what they change in the picture.
 
+mod bars;
 mod labels;
 mod layout;
 mod menus;
 mod side;
 mod slices;
 mod surroundings;
+mod values;
 
 use chiaroscuro::app::{App, Options};
 use chiaroscuro::model::{LightKind, Projection};
@@ -72,7 +74,7 @@ fn voxels_are_averaged_and_the_look_stays() {
     click(&mut harness, "Data");
     let before = harness.state().settings().clone();
     let choose = |harness: &mut Harness<'_, App>, thinning: &str, voxels: &'static str| {
-        harness.get_by_role_and_label(Role::ComboBox, "Fewer voxels").click();
+        harness.get_by_role_and_label(Role::ComboBox, "Subsample").click();
         harness.run_steps(4);
         // The list is over all else, and shown last.
         harness.get_all_by_label(thinning).last().expect("it is in the list").click();

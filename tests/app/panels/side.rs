@@ -141,10 +141,10 @@ fn steps_of_the_history_have_names() {
     wait_until_idle(&mut harness);
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     harness.run_steps(3);
-    assert_eq!(harness.state().latest_note(), Some("Undone: floor"));
+    assert_eq!(harness.state().latest_note(), Some("Undone: switch on floor"));
     harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     harness.run_steps(3);
-    assert_eq!(harness.state().latest_note(), Some("Redone: floor"));
+    assert_eq!(harness.state().latest_note(), Some("Redone: switch on floor"));
     wait_until_idle(&mut harness);
 }
 

@@ -72,7 +72,7 @@ fn file_row(
     let tip = text::corrections::tip(named, in_file);
     row(ui, named, |ui| {
         add(ui, &tip);
-        reset(ui, named.name, differs)
+        reset(ui, named.name, differs.then_some(in_file))
     })
 }
 

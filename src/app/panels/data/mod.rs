@@ -9,6 +9,7 @@ use eframe::egui::{self, Ui};
 use super::Panels;
 use super::controls::{reset, row, short, spacing};
 use crate::app::common::commands::{Command, THINNINGS};
+use crate::app::common::elide::elide_middle;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text::{self, Named};
 use crate::data::{KindName, ValueRange, plain};
@@ -54,7 +55,14 @@ fn facts(ui: &mut Ui, volume: &VolumeFacts) {
         rows.push((text::data::NOT_FINITE, text::data::not_finite(volume.non_finite_voxels)));
     }
     for (name, fact) in rows {
-        row(ui, Named { name, tip: "" }, |ui| ui.add(egui::Label::new(fact).truncate()));
+        row(ui, Named { name, tip: "" }, |ui| {
+            let shown = elide_middle(ui, &fact, &egui::TextStyle::Body, ui.available_width());
+            let is_cut = shown != fact;
+            let label = ui.add(egui::Label::new(shown).truncate());
+            if is_cut {
+                label.on_hover_text(fact);
+            }
+        });
     }
 }
 
@@ -102,46 +110,66 @@ fn thinning(ui: &mut Ui, volume: &VolumeFacts, commands: &mut Vec<Command>) {
     });
 }
 
+/// A length in the unit that it is shown in: millimetres only where the size of voxels is known.
+fn shown_length(length: Length, volume: &VolumeFacts) -> Length {
+    match length {
+        Length::Mm(_) if volume.has_unknown_scale => {
+            Length::Voxels(length.in_scene(&volume.scene) / volume.scene.mean_edge())
+        }
+        other => other,
+    }
+}
+
+/// What the unit of a length is called.
+fn unit_of(length: Length) -> Named {
+    match length {
+        Length::Mm(_) => text::data::MILLIMETRES,
+        Length::Voxels(_) => text::data::VOXELS,
+        Length::Extent(_) => text::data::EXTENT,
+    }
+}
+
 fn opacity_unit(ui: &mut Ui, settings: &mut Settings, defaults: &Settings, volume: &VolumeFacts) {
     let scene = volume.scene;
     let in_scene = settings.opacity_unit.in_scene(&scene);
     let conversions = [
-        (Length::Mm(in_scene * scene.mm_per_unit), text::data::MILLIMETRES),
-        (Length::Voxels(in_scene / scene.mean_edge()), text::data::VOXELS),
-        (Length::Extent(in_scene / 2.0), text::data::EXTENT),
+        Length::Mm(in_scene * scene.mm_per_unit),
+        Length::Voxels(in_scene / scene.mean_edge()),
+        Length::Extent(in_scene / 2.0),
     ];
-    let current =
-        |length: &Length| std::mem::discriminant(length) == std::mem::discriminant(&settings.opacity_unit);
-    let shown = conversions
-        .iter()
-        .find(|conversion| current(&conversion.0))
-        .map_or("", |conversion| conversion.1.name);
+    let shown = shown_length(settings.opacity_unit, volume);
+    let first = defaults.opacity_unit;
     let mut chosen = settings.opacity_unit;
     let named = text::data::OPACITY_UNIT;
     row(ui, named, |ui| {
-        let mut number = chosen.number();
+        let mut number = shown.number();
         let speed = number * 0.01;
         let field = egui::DragValue::new(&mut number).speed(speed).range(1e-6..=1e6).max_decimals(5);
         if ui.name_inputs(named.name, |ui| ui.add(field)).on_hover_text(named.tip).changed() {
-            chosen = match chosen {
+            chosen = match shown {
                 Length::Mm(_) => Length::Mm(number),
                 Length::Voxels(_) => Length::Voxels(number),
                 Length::Extent(_) => Length::Extent(number),
             };
         }
-        let combo = egui::ComboBox::from_id_salt("opacity unit").selected_text(shown).width(60.0);
+        let unit = unit_of(shown);
+        let combo = egui::ComboBox::from_id_salt("opacity unit").selected_text(unit.name).width(60.0);
         ui.name_inputs(text::data::UNITS, |ui| {
             combo.show_ui(ui, |ui| {
-                for (length, unit) in conversions {
-                    let label = ui.selectable_label(unit.name == shown, unit.name);
-                    if label.on_hover_text(unit.tip).clicked() {
+                let is_known = |length: &Length| shown_length(*length, volume) == *length;
+                for length in conversions.into_iter().filter(is_known) {
+                    let option = unit_of(length);
+                    let label = ui.selectable_label(option == unit, option.name);
+                    if label.on_hover_text(option.tip).clicked() {
                         chosen = length;
                     }
                 }
             })
         });
-        if reset(ui, named.name, chosen != defaults.opacity_unit) {
-            chosen = defaults.opacity_unit;
+        let back = shown_length(first, volume);
+        let back = text::data::length(&short(back.number()), unit_of(back));
+        if reset(ui, named.name, (chosen != first).then_some(back.as_str())) {
+            chosen = first;
         }
     });
     settings.opacity_unit = chosen;

@@ -153,13 +153,18 @@ impl App {
         Step { settings: self.settings.clone(), treated_as: self.treated.kind() }
     }
 
-    /// One step back, or one forward again, with a word about it; what reset buttons put back goes along.
+    /// One step back, or one forward again, which the status bar says; what reset buttons put back goes along.
     pub(super) fn go(&mut self, is_back: bool, ctx: &egui::Context) {
         let what = self.history.name(&self.step(), is_back);
         self.take_step(is_back, ctx);
         if let Some(what) = what {
             let words = text::messages::went(is_back, &what);
-            self.messages.note(words.clone());
+            if self.layout.picture_only {
+                // There is no status bar.
+                self.messages.note(words.clone());
+            } else {
+                self.messages.step(&words);
+            }
             self.history.went = Some((words, self.settings.clone()));
         }
     }
@@ -340,7 +345,7 @@ mod tests {
         let all = history.steps(&step(&settings));
         assert_eq!(
             (all.names.as_slice(), all.taken),
-            (["floor".to_owned(), "view".to_owned()].as_slice(), 2)
+            (["switch on floor".to_owned(), "turn camera".to_owned()].as_slice(), 2)
         );
         gone(&mut history, &mut settings, true);
         let before = history.steps(&step(&settings));

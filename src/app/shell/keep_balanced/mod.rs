@@ -2,7 +2,8 @@
 //! seconds, of any clock that does not go back.
 //!
 //! It acts only on a picture at rest, and what it finds is written into the settings: a picture depends on these
-//! alone, whenever and wherever it is made.
+//! alone, whenever and wherever it is made. The picture may be a preview: until the balance is there, none is drawn at full
+//! quality, so that a change is refined once.
 
 use std::time::Duration;
 
@@ -28,8 +29,8 @@ pub(crate) struct Moment<'a> {
     pub now_s: f64,
     /// The look.
     pub settings: &'a Settings,
-    /// The full-quality picture of the look is on screen.
-    pub complete: bool,
+    /// A picture of the look is on screen, a preview or not.
+    pub is_shown: bool,
     /// Somebody holds a button of the pointer or a key, or writes.
     pub held: bool,
     /// An earlier measurement still runs.
@@ -89,7 +90,7 @@ impl KeepBalanced {
 
     /// What is to be done in this frame.
     pub(crate) fn act(&mut self, moment: Moment<'_>) -> Act {
-        let Moment { now_s, settings, complete, held, busy } = moment;
+        let Moment { now_s, settings, is_shown, held, busy } = moment;
         let is_changed = *settings != self.seen;
         if is_changed {
             if settings.shadows.balance.to_bits() != self.seen.shadows.balance.to_bits() {
@@ -114,7 +115,7 @@ impl KeepBalanced {
             Phase::Easing { from, to, since_s } => self.ease(from, to, share(since_s, now_s)),
             Phase::Measuring => Act::Nothing,
             // The window draws a frame when any of these ends.
-            Phase::Rest if held || busy || !complete => Act::Nothing,
+            Phase::Rest if held || busy || !is_shown => Act::Nothing,
             Phase::Rest => {
                 let wait_s = self.stirred_s + REST_S - now_s;
                 if wait_s > 0.0 {
@@ -182,12 +183,15 @@ impl App {
     /// Keeps the picture as bright as without shadows, if that is wanted.
     pub(crate) fn keep_balanced(&mut self, ctx: &egui::Context) {
         let now_s = ctx.input(|input| input.time);
+        let (held, busy, has_its_volume) = (is_held(ctx), self.balance.is_some(), self.has_its_volume());
+        let is_due = self.keep_balanced.is_due(&self.settings);
+        self.viewport.hold_refinement(is_due && !held && !busy && has_its_volume);
         let act = self.keep_balanced.act(Moment {
             now_s,
             settings: &self.settings,
-            complete: self.is_complete(),
-            held: is_held(ctx),
-            busy: self.balance.is_some(),
+            is_shown: has_its_volume && self.viewport.shows(&self.compare.looks(&self.settings)),
+            held,
+            busy,
         });
         match act {
             Act::Nothing => {}

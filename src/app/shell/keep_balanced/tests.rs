@@ -9,7 +9,7 @@ struct Window {
     settings: Settings,
     now_s: f64,
     held: bool,
-    complete: bool,
+    is_shown: bool,
     /// What is measured, and when that ends.
     measuring: Option<(f64, f64)>,
     measured: usize,
@@ -28,7 +28,7 @@ impl Window {
             settings,
             now_s: 100.0,
             held: false,
-            complete: true,
+            is_shown: true,
             measuring: None,
             measured: 0,
             set: Vec::new(),
@@ -44,7 +44,7 @@ impl Window {
         let moment = Moment {
             now_s: self.now_s,
             settings: &self.settings,
-            complete: self.complete,
+            is_shown: self.is_shown,
             held: self.held,
             busy: self.measuring.is_some(),
         };
@@ -103,10 +103,10 @@ fn nothing_happens_within_a_drag_or_before_the_picture_is_there() {
     }
     window.pass(2.0);
     assert_eq!(window.measured, 0, "held, though it rests");
-    (window.held, window.complete) = (false, false);
+    (window.held, window.is_shown) = (false, false);
     window.pass(2.0);
     assert_eq!(window.measured, 0, "not drawn yet");
-    window.complete = true;
+    window.is_shown = true;
     window.pass(2.0);
     assert_eq!((window.measured, window.settings.shadows.balance.to_bits()), (1, 1.8f64.to_bits()));
 }

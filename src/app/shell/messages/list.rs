@@ -1,5 +1,7 @@
 //! The list of all that was said.
 
+use std::time::Instant;
+
 use eframe::egui::{self, RichText};
 
 use super::Messages;
@@ -12,6 +14,7 @@ impl Messages {
         if !self.lists {
             return;
         }
+        self.listed = Some(Instant::now());
         let window = egui::Window::new(text::messages::LIST).open(&mut self.lists).collapsible(false);
         let window = window.default_size([460.0, 260.0]).constrain_to(frame::room(ctx));
         let shown = window.show(ctx, |ui| {

@@ -4,12 +4,16 @@ mod list;
 mod notice;
 
 use std::collections::VecDeque;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use crate::data::{plain, without_controls};
 
 /// How long a note stays; errors stay until they are dismissed.
 const NOTE_S: f64 = 6.0;
+
+/// How long the status bar counts a message that nobody has looked up: as long as somebody may come back to it who was
+/// interrupted.
+const COUNTED: Duration = Duration::from_mins(1);
 
 /// Messages that are remembered: those of a long day.
 const MOST: usize = 200;
@@ -58,6 +62,8 @@ pub(crate) struct Messages {
     note: Option<String>,
     /// All that was said, the latest last, and when.
     past: VecDeque<(Instant, Message)>,
+    /// When the list of them was on screen last.
+    listed: Option<Instant>,
     /// The list of them is shown.
     pub lists: bool,
 }
@@ -78,6 +84,14 @@ impl Messages {
         self.show(Message { short, details: String::new(), is_error: false });
     }
 
+    /// A step of the history was taken: the status bar says so, and nothing is laid over the picture.
+    pub(crate) fn step(&mut self, words: &str) {
+        self.note = Some(plain(words, LONGEST_SHORT));
+        if self.current.as_ref().is_some_and(|message| !message.is_error) {
+            self.current = None;
+        }
+    }
+
     fn show(&mut self, Message { short, details, is_error }: Message) {
         // Names and errors come from files, and a label of any length takes as long to lay out.
         let short = plain(&short, LONGEST_SHORT);
@@ -94,8 +108,8 @@ impl Messages {
 
     /// A new volume is there: what was said before is over.
     pub(crate) fn clear(&mut self) {
-        let (past, lists) = (std::mem::take(&mut self.past), self.lists);
-        *self = Self { past, lists, ..Self::default() };
+        let (past, listed, lists) = (std::mem::take(&mut self.past), self.listed, self.lists);
+        *self = Self { past, listed, lists, ..Self::default() };
     }
 
     /// What is being said is over; what went wrong stays known.
@@ -118,15 +132,42 @@ impl Messages {
         self.current.as_ref().is_some_and(|message| !message.is_error)
     }
 
-    /// How many messages there have been.
-    pub(crate) fn count(&self) -> usize {
-        self.past.len()
+    /// How many messages have come lately that were not looked up in the list, and how long that holds.
+    pub(crate) fn unread(&self) -> (usize, Duration) {
+        let is_new =
+            |when: &Instant| when.elapsed() < COUNTED && self.listed.is_none_or(|listed| *when > listed);
+        let new: Vec<_> = self.past.iter().map(|(when, _)| when).filter(|when| is_new(when)).collect();
+        let left = new.last().map_or(Duration::ZERO, |when| COUNTED.saturating_sub(when.elapsed()));
+        (new.len(), left)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn messages_are_counted_until_they_are_looked_up_or_old() {
+        let mut messages = Messages::default();
+        assert_eq!(messages.unread().0, 0);
+        messages.note("one");
+        messages.error("two", "why");
+        messages.step("Undone: turn camera");
+        assert_eq!(messages.latest_note(), Some("Undone: turn camera"));
+        assert_eq!(messages.unread().0, 2, "a step is no message");
+        assert!(messages.current.as_ref().is_some_and(|message| message.is_error), "what went wrong stays");
+        messages.listed = Some(Instant::now());
+        assert_eq!(messages.unread().0, 0);
+        messages.note("three");
+        let (count, left) = messages.unread();
+        assert!(count == 1 && left <= COUNTED && left > COUNTED / 2, "{count} {left:?}");
+        if let Some(long_ago) = Instant::now().checked_sub(2 * COUNTED) {
+            (messages.listed, messages.past[2].0) = (None, long_ago);
+            assert_eq!(messages.unread().0, 2);
+            messages.past.iter_mut().for_each(|(when, _)| *when = long_ago);
+            assert_eq!(messages.unread(), (0, Duration::ZERO));
+        }
+    }
 
     #[test]
     fn foreign_words_are_harmless_and_short() {

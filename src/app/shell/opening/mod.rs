@@ -94,6 +94,14 @@ impl App {
         }
     }
 
+    /// Opens what has waited for the answer whether to reopen the last session, unless something is open or being opened.
+    pub(crate) fn open_what_waits(&mut self, ctx: &egui::Context) {
+        let is_free = self.volume.is_none() && self.loader.progress().is_none() && !self.foreign_path.asks();
+        if std::mem::take(&mut self.first_waits) && is_free {
+            self.open_first(None, None, ctx);
+        }
+    }
+
     /// Opens the volume that the session is of, where it says so. Its look is laid over whatever volume is the first.
     fn open_volume_of_session(&mut self, ctx: &egui::Context) {
         let session = self.session.as_ref().map(|session| session.path().to_owned());

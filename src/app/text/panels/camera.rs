@@ -27,10 +27,8 @@ pub(crate) const AZIMUTH: Named = named("Azimuth", "Around the vertical axis; dr
 pub(crate) const ELEVATION: Named =
     named("Elevation", "Above the horizontal plane; drag the picture up or down");
 pub(crate) const ROLL: Named = named("Roll", "Turns the picture");
-pub(crate) const DISTANCE: Named = named(
-    "Distance",
-    "From the eye to the middle of the view; the volume's longest edge is 2 long. The wheel does the same",
-);
+pub(crate) const DISTANCE: Named =
+    named("Distance", "From the eye to the middle of the view. The wheel does the same");
 pub(crate) const FIELD_OF_VIEW: Named =
     named("Field of view", "Vertical angle of view, of what it is fitted to: wide exaggerates depth");
 pub(crate) const FIT: Named =

@@ -41,6 +41,11 @@ pub(crate) fn crop(axis: &str) -> String {
     format!("crop {axis}")
 }
 
+/// What remains along an axis, in voxels.
+pub(crate) fn voxels(from: f64, to: f64) -> String {
+    format!("{from:.0} … {to:.0}")
+}
+
 /// The first voxel that remains along an axis.
 pub(crate) fn crop_from(axis: &str) -> String {
     format!("Crop {axis} from")

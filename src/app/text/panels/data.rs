@@ -22,7 +22,7 @@ pub(crate) const MEMORY: &str = "Memory";
 pub(crate) const NOT_FINITE: &str = "Not finite";
 
 pub(crate) const THINNING: Named = named(
-    "Fewer voxels",
+    "Subsample",
     "Shows fewer voxels, each one of several or the mean of a block: quicker pictures and less memory, without the \
      finest details. The volume is read again, the look stays",
 );
@@ -131,6 +131,11 @@ pub(crate) const UNITS: &str = "Unit of the opacity unit";
 pub(crate) const MILLIMETRES: Named = named("mm", "Stays the same for every volume of the same thing");
 pub(crate) const VOXELS: Named = named("voxels", "Follows the resolution of the data");
 pub(crate) const EXTENT: Named = named("extent", "A share of the longest edge of the volume");
+
+/// A length in digits, with its unit.
+pub(crate) fn length(digits: &str, unit: Named) -> String {
+    format!("{digits} {}", unit.name)
+}
 
 /// Voxels along x, y and z.
 pub(crate) fn dimensions([x, y, z]: [usize; 3]) -> String {

@@ -24,12 +24,10 @@ pub(crate) const NAME: Named = named("Name", "What this light is called in the l
 pub(crate) const NAME_HINT: &str = "Name of the light";
 pub(crate) const KIND: Named = named("Kind", "How the light's rays run");
 pub(crate) const INTENSITY: Named = named("Intensity", "How bright this light is; costs no new shadows");
-pub(crate) const DISTANCE: Named = named(
-    "Distance",
-    "From the middle of the volume, whose longest edge is 2 long; near lights spread their shadows",
-);
+pub(crate) const DISTANCE: Named =
+    named("Distance", "From the middle of the volume; near lights spread their shadows");
 pub(crate) const LOCK: Named =
-    named("Stays with", "What the light keeps its place to while the camera turns");
+    named("Attached to", "What the light keeps its place to while the camera turns");
 pub(crate) const HEADLIGHT: Named = named(
     "Headlight",
     "Puts this light where the eye is, and keeps it there: everything seen is lit, shadows hide",
@@ -56,10 +54,8 @@ pub(crate) const ANGLE: Named = named(
     "Width",
     "How wide the light looks from the volume: the sun has half a degree; its border can be dragged in the picture",
 );
-pub(crate) const SIZE: Named = named(
-    "Width",
-    "How wide the light is, where the longest edge of the volume is 2; its border can be dragged in the picture",
-);
+pub(crate) const SIZE: Named =
+    named("Width", "How wide the light is; its border can be dragged in the picture");
 pub(crate) const ASPECT: Named = named("Width by height", "1 is a square, 2 twice as wide as high");
 pub(crate) const TURN: Named = named("Turn", "Turns the rectangle about the line to the volume");
 

@@ -31,4 +31,3 @@ pub(crate) const CLIP: Named = named("Clip", "Cuts at full brightness; exact bel
 pub(crate) const BACKGROUND: Named = named("Background", "Behind the volume, from the top to the bottom");
 pub(crate) const BACKGROUND_TOP: &str = "Background top";
 pub(crate) const BACKGROUND_BOTTOM: &str = "Background bottom";
-pub(crate) const RESET_BACKGROUND: Named = named("Reset", "Puts the dark gradient back");

@@ -2,16 +2,16 @@
 
 use crate::app::text::{Named, named};
 
-pub(crate) const ALGORITHM: Named = named("Shadows", "How light is attenuated on its way");
+pub(crate) const ALGORITHM: Named = named("Method", "How light is attenuated on its way");
 pub(crate) const OFF: Named = named("Off", "Light reaches everything: only the shading is left");
 pub(crate) const SPLAT: Named =
-    named("Splatting", "A light volume filled by sheet-buffer splatting: the quick way");
+    named("Splat", "A light volume filled by sheet-buffer splatting: the quick way");
 pub(crate) const RAYCAST: Named = named(
-    "Per voxel",
+    "Voxel",
     "A light volume filled by a ray from every voxel: a little sharper, many times slower when a light moves",
 );
 pub(crate) const DIRECT: Named = named(
-    "Per sample",
+    "Sample",
     "A ray to the light from every sample: the sharpest shadows; every picture takes as long as a light volume",
 );
 

@@ -1,12 +1,12 @@
-//! What a step of the history changes, in a few words.
+//! What a step of the history does, in a few words that follow "Undo" and "Undone:".
 
 use crate::app::text;
-use crate::model::{Light, Settings, Shadows};
+use crate::model::{Camera, Cuts, Kept, Light, Output, Quality, Settings, Shadows, TransferFunction};
 
 /// Where only the kind of data changes for which the look was made.
-pub(crate) const KIND_OF_DATA: &str = "kind of data";
+pub(crate) const KIND_OF_DATA: &str = "change kind of data";
 
-/// What differs between two looks; `None` where nothing does.
+/// What a step from one look to another does; `None` where nothing differs.
 pub(crate) fn of(before: &Settings, after: &Settings) -> Option<String> {
     let Settings {
         schema: _,
@@ -28,37 +28,53 @@ pub(crate) fn of(before: &Settings, after: &Settings) -> Option<String> {
         kept,
         volume,
     } = before;
+    let with = |differs: bool, words: &str| differs.then(|| words.to_owned());
     let parts = [
-        (*lights != after.lights, "lights"),
-        (*camera != after.camera, "view"),
-        (*transfer != after.transfer, "transfer function"),
-        (*lighting != after.lighting, "light opacity"),
-        (*labels != after.labels, "labels"),
-        (*range != after.range, "range of values"),
-        (*opacity_unit != after.opacity_unit, "opacity unit"),
-        (*shading != after.shading, "shading"),
-        (with_balance(&after.shadows, shadows.balance) != *shadows, "shadows"),
-        (*sky != after.sky, "sky"),
-        (*scattering != after.scattering, "scattering"),
-        (*cuts != after.cuts, "cut"),
-        (*floor != after.floor, "floor"),
-        (*sampling != after.sampling, "sampling"),
-        (*output != after.output, "exposure and background"),
-        (*kept != after.kept, "kept views and looks"),
-        (*volume != after.volume, "corrections of the file"),
+        (*lights != after.lights).then(|| of_lights(lights, &after.lights)),
+        with(*camera != after.camera, of_camera(camera, &after.camera)),
+        with(*transfer != after.transfer, of_transfer(transfer, &after.transfer)),
+        with(*lighting != after.lighting, "change opacity for light"),
+        with(*labels != after.labels, "change labels"),
+        with(*range != after.range, "change range of values"),
+        with(*opacity_unit != after.opacity_unit, "change opacity unit"),
+        with(*shading != after.shading, "change shading"),
+        with(with_balance(&after.shadows, shadows.balance) != *shadows, "change shadows"),
+        with(*sky != after.sky, "change sky"),
+        with(*scattering != after.scattering, "change scattering"),
+        with(*cuts != after.cuts, of_cuts(cuts, &after.cuts)),
+        (*floor != after.floor).then(|| switched("floor", [floor.on, after.floor.on], "change floor")),
+        with(*sampling != after.sampling, "change sampling"),
+        with(*output != after.output, of_output(output, &after.output)),
+        with(*kept != after.kept, of_kept(kept, &after.kept)),
+        with(*volume != after.volume, "correct the file"),
     ];
-    let changed: Vec<&str> =
-        parts.into_iter().filter(|(differs, _)| *differs).map(|(_, name)| name).collect();
-    match changed[..] {
+    let changed: Vec<String> = parts.into_iter().flatten().collect();
+    match &changed[..] {
         // It follows what else changes, and is nobody's doing then.
-        [] if shadows.balance.to_bits() != after.shadows.balance.to_bits() => Some("balance".to_owned()),
-        [] => None,
-        ["lights"] => Some(of_lights(lights, &after.lights)),
-        [one] => Some(one.to_owned()),
-        [one, other] => Some(format!("{one} and {other}")),
-        // More than that is another look.
-        _ => Some("look".to_owned()),
+        [] => (shadows.balance.to_bits() != after.shadows.balance.to_bits())
+            .then(|| "balance lights".to_owned()),
+        _ if is_quality(before, after) => Some("change quality".to_owned()),
+        [one] => Some(one.clone()),
+        [one, other] => Some(both(one, other)),
+        _ => Some("change look".to_owned()),
     }
+}
+
+/// Two changes in one phrase; a verb that both have is said once.
+fn both(one: &str, other: &str) -> String {
+    let verb = "change ";
+    let other = if one.starts_with(verb) { other.strip_prefix(verb).unwrap_or(other) } else { other };
+    format!("{one} and {other}")
+}
+
+/// Whether a level of quality was chosen, and nothing else was done.
+fn is_quality(before: &Settings, after: &Settings) -> bool {
+    Quality::of(after).is_some_and(|level| {
+        let mut chosen = before.clone();
+        level.apply(&mut chosen);
+        chosen.shadows.balance = after.shadows.balance;
+        Quality::of(before) != Some(level) && chosen == *after
+    })
 }
 
 /// Shadows with another balance.
@@ -66,57 +82,180 @@ fn with_balance(shadows: &Shadows, balance: f64) -> Shadows {
     Shadows { balance, ..shadows.clone() }
 }
 
+/// A thing that was switched on or off, or else `other` that was done to it.
+fn switched(name: &str, was_and_is_on: [bool; 2], other: &str) -> String {
+    match was_and_is_on {
+        [false, true] => format!("switch on {name}"),
+        [true, false] => format!("switch off {name}"),
+        _ => other.to_owned(),
+    }
+}
+
+fn of_camera(before: &Camera, after: &Camera) -> &'static str {
+    let angles =
+        |camera: &Camera| [camera.azimuth_deg, camera.elevation_deg, camera.roll_deg].map(f64::to_bits);
+    if before.up != after.up {
+        "turn object"
+    } else if before.projection != after.projection {
+        "change projection"
+    } else if angles(before) != angles(after) {
+        // Whatever else it takes to keep the object in the picture.
+        "turn camera"
+    } else if before.target != after.target {
+        "move camera"
+    } else if before.distance.to_bits() != after.distance.to_bits() {
+        "zoom"
+    } else {
+        "change field of view"
+    }
+}
+
 fn of_lights(before: &[Light], after: &[Light]) -> String {
     if after.len() > before.len() {
-        return "adding a light".to_owned();
+        return "add light".to_owned();
     }
     if after.len() < before.len() {
-        return "removing a light".to_owned();
+        return "remove light".to_owned();
     }
     let changed: Vec<(&Light, &Light)> = before.iter().zip(after).filter(|(a, b)| a != b).collect();
-    let [(a, b)] = changed[..] else { return "lights".to_owned() };
+    match changed[..] {
+        [(a, b)] => of_light(a, b),
+        _ => "change lights".to_owned(),
+    }
+}
+
+/// What is done to one light.
+fn of_light(a: &Light, b: &Light) -> String {
     let name = if b.name.is_empty() { text::lights::UNNAMED } else { &b.name };
-    let moved = Light { position: b.position, ..a.clone() };
-    if moved == *b { format!("moving {name}") } else { name.to_owned() }
+    // What would be as it is if this alone had been done.
+    let alone = |done: Light| done == *b;
+    if alone(Light { name: b.name.clone(), ..a.clone() }) {
+        "rename light".to_owned()
+    } else if alone(Light { position: b.position, ..a.clone() }) {
+        format!("move {name}")
+    } else if alone(Light { on: b.on, ..a.clone() }) {
+        switched(name, [a.on, b.on], "")
+    } else if alone(Light { intensity: b.intensity, ..a.clone() }) {
+        format!("change intensity of {name}")
+    } else if alone(Light { color: b.color, ..a.clone() }) {
+        format!("change colour of {name}")
+    } else {
+        format!("change {name}")
+    }
+}
+
+fn of_transfer(before: &TransferFunction, after: &TransferFunction) -> &'static str {
+    let has_all = |of: &TransferFunction, other: &TransferFunction| {
+        other.points.iter().all(|point| of.points.contains(point))
+    };
+    // A point beyond the ends brings another with it.
+    let most_added = before.points.len() + 2;
+    if (before.points.len() + 1..=most_added).contains(&after.points.len()) && has_all(after, before) {
+        "add point of transfer function"
+    } else if after.points.len() + 1 == before.points.len() && has_all(before, after) {
+        "remove point of transfer function"
+    } else {
+        "change transfer function"
+    }
+}
+
+fn of_cuts(before: &Cuts, after: &Cuts) -> &'static str {
+    match (before.plane.on, after.plane.on, before.crop.on, after.crop.on) {
+        (false, true, ..) => "switch on clip plane",
+        (true, false, ..) => "switch off clip plane",
+        (.., false, true) => "switch on crop box",
+        (.., true, false) => "switch off crop box",
+        _ if before.crop == after.crop => "move clip plane",
+        _ if before.plane == after.plane => "change crop box",
+        _ => "change clipping",
+    }
+}
+
+fn of_output(before: &Output, after: &Output) -> &'static str {
+    if (Output { exposure: after.exposure, ..before.clone() }) == *after {
+        "change exposure"
+    } else {
+        "change background"
+    }
+}
+
+fn of_kept(before: &[Kept], after: &[Kept]) -> &'static str {
+    match after.len().cmp(&before.len()) {
+        std::cmp::Ordering::Greater => "save view",
+        std::cmp::Ordering::Less => "remove saved view",
+        std::cmp::Ordering::Equal => "change saved views",
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::Settings;
+    use crate::model::ControlPoint;
 
-    fn change(of_settings: impl FnOnce(&mut Settings)) -> Option<String> {
+    fn change(of_settings: impl FnOnce(&mut Settings)) -> String {
         let before = Settings::default();
         let mut after = before.clone();
         of_settings(&mut after);
-        of(&before, &after)
+        of(&before, &after).unwrap_or_default()
     }
 
     #[test]
-    fn steps_have_names() {
-        let said = |found: Option<String>| found.unwrap_or_default();
-        assert_eq!(change(|_| {}), None);
-        assert_eq!(said(change(|settings| settings.lights[0].position = [1.0; 3])), "moving Light");
-        assert_eq!(said(change(|settings| settings.lights[0].intensity = 3.0)), "Light");
-        assert_eq!(said(change(|settings| settings.lights.push(Light::default()))), "adding a light");
-        assert_eq!(said(change(|settings| settings.lights.clear())), "removing a light");
-        assert_eq!(said(change(|settings| settings.floor.on = true)), "floor");
-        assert_eq!(said(change(|settings| settings.shadows.balance = 2.0)), "balance");
-        let balanced = said(change(|settings| {
+    fn steps_say_what_was_done() {
+        assert_eq!(of(&Settings::default(), &Settings::default()), None);
+        let named = |done: fn(&mut Light)| {
+            let mut before = Settings::default();
+            before.lights[0].name = "Key".to_owned();
+            let mut after = before.clone();
+            done(&mut after.lights[0]);
+            of(&before, &after).unwrap_or_default()
+        };
+        assert_eq!(named(|light| light.position = [1.0; 3]), "move Key");
+        assert_eq!(named(|light| light.name = "Lamp".to_owned()), "rename light");
+        assert_eq!(named(|light| light.on = false), "switch off Key");
+        assert_eq!(named(|light| light.intensity = 3.0), "change intensity of Key");
+        assert_eq!(named(|light| light.color = [0.1; 3]), "change colour of Key");
+        assert_eq!(named(|light| light.size = 0.7), "change Key");
+        assert_eq!(change(|settings| settings.lights.push(Light::default())), "add light");
+        assert_eq!(change(|settings| settings.lights.clear()), "remove light");
+        assert_eq!(change(|settings| settings.camera.azimuth_deg += 7.0), "turn camera");
+        assert_eq!(change(|settings| settings.camera.distance *= 2.0), "zoom");
+        assert_eq!(change(|settings| settings.camera.target[0] += 1.0), "move camera");
+        assert_eq!(change(|settings| settings.floor.on = true), "switch on floor");
+        assert_eq!(change(|settings| settings.floor.opacity = 0.123), "change floor");
+        assert_eq!(change(|settings| settings.cuts.plane.on = true), "switch on clip plane");
+        assert_eq!(change(|settings| settings.output.exposure = 2.0), "change exposure");
+        assert_eq!(change(|settings| settings.shadows.balance = 2.0), "balance lights");
+        let point = ControlPoint::new(1.0, [1.0; 3], 0.5);
+        assert_eq!(change(|look| look.transfer.points.push(point)), "add point of transfer function");
+    }
+
+    #[test]
+    fn what_follows_a_change_is_not_named_beside_it() {
+        let balanced = change(|settings| {
             settings.lights[0].intensity = 3.0;
             settings.shadows.balance = 2.0;
-        }));
-        assert_eq!(balanced, "Light");
-        let two = said(change(|settings| {
+        });
+        assert_eq!(balanced, format!("change intensity of {}", Settings::default().lights[0].name));
+    }
+
+    #[test]
+    fn several_changes_have_a_name_too() {
+        let two = change(|settings| {
             settings.floor.on = true;
             settings.camera.azimuth_deg = 3.0;
-        }));
-        assert_eq!(two, "view and floor");
-        let all = said(change(|settings| {
+        });
+        assert_eq!(two, "turn camera and switch on floor");
+        let alike = change(|settings| {
+            settings.shading.ambient = 0.9;
+            settings.shadows.gain = 2.0;
+        });
+        assert_eq!(alike, "change shading and shadows");
+        let all = change(|settings| {
             settings.floor.on = true;
             settings.camera.azimuth_deg = 3.0;
             settings.shadows.gain = 2.0;
-        }));
-        assert_eq!(all, "look");
+        });
+        assert_eq!(all, "change look");
+        assert_eq!(change(|settings| Quality::Exact.apply(settings)), "change quality");
     }
 }

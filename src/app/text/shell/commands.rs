@@ -19,7 +19,7 @@ pub(crate) const SAVE_SETTINGS: &str = "Save session…";
 pub(crate) const LOAD_SETTINGS: &str = "Load session or settings…";
 pub(crate) const EXPORT: &str = "Export picture or turntable…";
 pub(crate) const COPY_PICTURE: &str = "Copy picture";
-pub(crate) const KEEP_LOOK: &str = "Next file with this look";
+pub(crate) const KEEP_LOOK: &str = "Keep look for next file";
 pub(crate) const QUIT: &str = "Quit";
 
 pub(crate) const UNDO: &str = "Undo";
@@ -30,21 +30,25 @@ pub(crate) const SHOW_PALETTE: &str = "Find a command…";
 
 pub(crate) const RESET_VIEW: &str = "Reset view";
 pub(crate) const FRAME_ALL: &str = "Frame all";
-pub(crate) const TURN_OBJECT: &str = "Stand up or lay down";
-pub(crate) const TURN_ROUND: &str = "Turn round by a quarter";
+pub(crate) const TURN_OBJECT: &str = "Tilt by 90°";
+pub(crate) const TURN_OBJECT_WORDS: &str =
+    "stand up lay down flip tip over upside down turn object orientation";
+pub(crate) const TURN_ROUND: &str = "Rotate by 90°";
+pub(crate) const TURN_ROUND_WORDS: &str = "turn round quarter around spin object orientation";
 pub(crate) const TOGGLE_PROJECTION: &str = "Perspective or orthographic";
 pub(crate) const TOGGLE_FULL_SCREEN: &str = "Full screen";
 pub(crate) const TOGGLE_SIDE: &str = "Side panel";
-pub(crate) const TOGGLE_KEPT: &str = "Kept views and looks";
-pub(crate) const KEEP_VIEW: &str = "Keep this view";
-pub(crate) const KEEP_IN_STRIP: &str = "Keep this look";
-pub(crate) const GO_TO_KEPT: &str = "Go to what is kept";
-pub(crate) const EXPORT_KEPT: &str = "Contact sheet of what is kept…";
+pub(crate) const TOGGLE_KEPT: &str = "Saved views and looks";
+pub(crate) const KEEP_VIEW: &str = "Save view";
+pub(crate) const KEEP_IN_STRIP: &str = "Save look";
+pub(crate) const GO_TO_KEPT: &str = "Go to saved view or look";
+pub(crate) const EXPORT_KEPT: &str = "Contact sheet of saved views…";
 pub(crate) const TOGGLE_TRANSFER: &str = "Transfer function editor";
 pub(crate) const PICTURE_ONLY: &str = "Picture only";
 pub(crate) const LARGER: &str = "Larger interface";
 pub(crate) const SMALLER: &str = "Smaller interface";
-pub(crate) const USUAL_SIZE: &str = "Interface as large as usual";
+pub(crate) const USUAL_SIZE: &str = "Default interface size";
+pub(crate) const SCALE_WORDS: &str = "zoom text font size dpi scale reset";
 pub(crate) const TOGGLE_HANDLES: &str = "Handles";
 pub(crate) const TOGGLE_OVERLAY: &str = "Overlays";
 pub(crate) const TOGGLE_PROBE: &str = "Why is this dark? (probe)";
@@ -61,6 +65,14 @@ pub(crate) const ADD_LIGHT: &str = "Add light";
 pub(crate) const USE_LIGHTS: &str = "Use lights";
 pub(crate) const USE_LOOK: &str = "Use look";
 pub(crate) const TRY_LOOKS: &str = "Try looks…";
+/// What else commands are found by.
+pub(crate) const GO_ON_WORDS: &str = "go on where you left off continue resume restore";
+pub(crate) const SAVE_WORDS: &str = "save settings";
+pub(crate) const EXPORT_WORDS: &str = "screenshot save picture image figure render turntable video movie";
+pub(crate) const TRANSFER_WORDS: &str = "load colormap colour map lut tf";
+pub(crate) const SOLO_WORDS: &str = "only the selected light alone others off";
+pub(crate) const MUTE_WORDS: &str = "switch off on disable enable";
+pub(crate) const COMPARE_WORDS: &str = "before after split side by side difference";
 
 /// Where something is set.
 pub(crate) fn reveal(section: &str, row: Option<&str>) -> String {
@@ -76,8 +88,8 @@ pub(crate) const USE_SURROUNDINGS: &str = "Light by surroundings in a picture…
 pub(crate) const TRY_LIGHTS: &str = "Try lights…";
 pub(crate) const NEXT_LIGHT: &str = "Next light";
 pub(crate) const PREVIOUS_LIGHT: &str = "Previous light";
-pub(crate) const SOLO: &str = "Only the selected light";
-pub(crate) const MUTE: &str = "Selected light off or on";
+pub(crate) const SOLO: &str = "Solo selected light";
+pub(crate) const MUTE: &str = "Mute selected light";
 pub(crate) const BRIGHTER: &str = "Brighter light";
 pub(crate) const DIMMER: &str = "Dimmer light";
 pub(crate) const BALANCE: &str = "Balance brightness";
@@ -134,12 +146,12 @@ pub(crate) fn use_colors(map: &str, reversed: bool) -> String {
 
 /// Keeping a view under a digit.
 pub(crate) fn store_view(slot: u8) -> String {
-    format!("Keep this view as {slot}")
+    format!("Save view as {slot}")
 }
 
 /// Looking from a saved view again.
 pub(crate) fn recall_view(slot: u8) -> String {
-    format!("Go to kept {slot}")
+    format!("Go to saved {slot}")
 }
 
 /// The keys that keep a view.

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 /// The window that offers looks of runs that crashed.
 pub(crate) const ENDED_BADLY: &str = "Reopen the last session?";
-pub(crate) const ENDED_BADLY_WHY: &str = "Chiaroscuro was cut off. This is how it looked:";
+pub(crate) const ENDED_BADLY_WHY: &str = "Chiaroscuro did not close properly. This is how it looked:";
 pub(crate) const GO_ON: &str = "Reopen";
 pub(crate) const NOT_NOW: &str = "Not now";
 pub(crate) const NOT_NOW_TIP: &str = "It stays in File, Earlier looks";
@@ -21,9 +21,9 @@ pub(crate) const WORTH_KNOWING: &str = "Something is not as it was";
 
 /// The window that asks before an export is given up.
 pub(crate) const EXPORTING: &str = "Quit while a picture is being exported?";
-pub(crate) const EXPORTING_WHY: &str = "What has been exported so far would be given up.";
+pub(crate) const EXPORTING_WHY: &str = "What has been exported so far would be discarded.";
 pub(crate) const QUIT_AFTER: &str = "Quit when it is done";
-pub(crate) const QUIT_NOW: &str = "Give it up and quit";
+pub(crate) const QUIT_NOW: &str = "Discard and quit";
 pub(crate) const STAY: &str = "Stay";
 
 /// Why Ctrl+S asks for another file instead of writing the session.

@@ -12,7 +12,7 @@ pub(crate) const KEEP_LOOK_TIP: &str =
     "Lights, transfer function and shadows stay when another file is opened";
 
 pub(crate) const LOOK_FROM: &str = "Look from";
-pub(crate) const KEPT: &str = "Kept";
+pub(crate) const KEPT: &str = "Saved views";
 pub(crate) const PERSPECTIVE: &str = "Perspective";
 pub(crate) const ORTHOGRAPHIC: &str = "Orthographic";
 
@@ -33,7 +33,7 @@ pub(crate) const DARK: &str = "Dark";
 pub(crate) const BRIGHT: &str = "Light";
 pub(crate) const AS_SYSTEM: &str = "Same as system";
 
-pub(crate) const USE_RIG: &str = "Use other lights";
+pub(crate) const USE_RIG: &str = "Light rigs";
 
 /// A step of the history, and what it changes.
 pub(crate) fn step(label: &str, what: Option<&str>) -> String {
@@ -45,18 +45,19 @@ pub(crate) fn with_key(label: &str, key: &str) -> String {
     format!("{label} ({key})")
 }
 
-/// The open volume, its voxels and their size.
-pub(crate) fn title(
-    name: &str,
-    [nx, ny, nz]: [usize; 3],
-    [sx, sy, sz]: [f64; 3],
-    has_unknown_scale: bool,
-) -> String {
+/// The open volume's name, and what is said of it.
+pub(crate) fn title(name: &str, facts: &str) -> String {
+    format!("{name} · {facts}")
+}
+
+/// The open volume's voxels, and their size.
+pub(crate) fn facts([nx, ny, nz]: [usize; 3], spacing_mm: [f64; 3], has_unknown_scale: bool) -> String {
+    let [sx, sy, sz] = spacing_mm;
     // Voxels that are cubes of a size that nobody knows: there is nothing to say of it.
     if has_unknown_scale && sx == sy && sy == sz {
-        return format!("{name} · {nx}×{ny}×{nz}");
+        return format!("{nx}×{ny}×{nz}");
     }
-    let unit = crate::app::text::panels::data::unit_of_spacing([sx, sy, sz], has_unknown_scale);
-    let [sx, sy, sz] = [sx, sy, sz].map(|length| length / unit.mm);
-    format!("{name} · {nx}×{ny}×{nz} · {sx:.3}×{sy:.3}×{sz:.3}{}", unit.suffix)
+    let unit = crate::app::text::panels::data::unit_of_spacing(spacing_mm, has_unknown_scale);
+    let [sx, sy, sz] = spacing_mm.map(|length| length / unit.mm);
+    format!("{nx}×{ny}×{nz} · {sx:.3}×{sy:.3}×{sz:.3}{}", unit.suffix)
 }

@@ -38,7 +38,7 @@ pub(crate) fn variant(variant: &Variant) -> &'static str {
         Variant::Direct => "Per sample",
         Variant::Scatter => "Scattered",
         Variant::FirstTouch => "First touch",
-        Variant::Look(_) => "Kept look",
-        Variant::View(_) => "Kept view",
+        Variant::Look(_) => "Saved look",
+        Variant::View(_) => "Saved view",
     }
 }

@@ -15,9 +15,9 @@ pub(crate) fn trying(done: usize, count: usize) -> String {
         format!("Trying them on your volume, {done} of {count}")
     }
 }
-pub(crate) const AGAIN: &str = "Again, as it looks now";
+pub(crate) const AGAIN: &str = "Refresh";
 /// Why the pictures are small and coarse.
-pub(crate) const QUALITY: &str = "The picture's own size and quality come with a click";
+pub(crate) const QUALITY: &str = "Click to apply";
 pub(crate) const USE_TIP: &str = "Use it";
 
 /// Why no light is suggested.

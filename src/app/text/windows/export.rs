@@ -11,6 +11,8 @@ pub(crate) const MARKS: &str = "Marks";
 pub(crate) const SCALE_BAR: Named = named("Scale bar", "How long things are, at the middle of the view");
 pub(crate) const LETTERS: Named =
     named("Orientation letters", "Which side of a body is where, if the file says it");
+/// The tip where there are none.
+pub(crate) const NO_LETTERS_TIP: &str = "The file does not say which side of a body is where";
 pub(crate) const LEGEND: Named = named("Legend", "Which colour stands for which value or label");
 pub(crate) const SHOW_IN_FOLDER: &str = "Show in folder";
 pub(crate) const COPY_PATH: &str = "Copy path";

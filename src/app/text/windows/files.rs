@@ -68,7 +68,7 @@ pub(crate) const REPLACE: &str = "Replace";
 /// Asks whether a file is to be replaced.
 pub(crate) fn is_there_already(file: &Path) -> String {
     let name = file.file_name().unwrap_or_default().to_string_lossy();
-    format!("{name} is there already. Replace it?")
+    format!("{name} already exists. Replace it?")
 }
 
 /// Kinds of files, which the desktop's dialog lists.

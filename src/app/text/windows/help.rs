@@ -25,7 +25,7 @@ pub(crate) const MOUSE: [(&str, &str); 22] = [
     ("Double click, or Delete", "Remove it"),
     ("Draw, then drag", "Draw the transfer function by hand"),
     ("Click with the probe on", "Keep what it says; two clicks measure"),
-    ("Drag kept views and looks", "Put them in another order"),
+    ("Drag saved views and looks", "Put them in another order"),
     ("Escape while dragging", "Back to where it was"),
 ];
 

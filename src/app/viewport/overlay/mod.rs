@@ -1,10 +1,9 @@
 //! Overlay over the picture: the volume's box, a scale bar, and a cube that says from where one looks. They are
-//! painted by the window and are therefore never in an export.
+//! painted by the window and are therefore never in an export; while one is asked for, its own marks take their place.
 
-pub(in crate::app) mod crop_frame;
 pub(in crate::app) mod ct_looks;
-mod outlined;
-pub(in crate::app) mod side_letters;
+pub(in crate::app) mod export_marks;
+mod sides;
 
 use eframe::egui::{
     Align2, Color32, FontId, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2,

@@ -31,6 +31,40 @@ const COLUMNS: usize = 4;
 /// The most of them: as many as the largest sheets have.
 const MOST_COLUMNS: usize = 12;
 
+/// Points between pictures.
+const GAP: f32 = 8.0;
+/// Widths of pictures as shares of that which they were made for: from where they are still told apart to where they are
+/// blurred.
+const WIDTHS: std::ops::RangeInclusive<f32> = 0.65..=1.35;
+
+/// How pictures lie side by side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Tiles {
+    columns: usize,
+    /// Points of a picture.
+    width: f32,
+}
+
+impl Tiles {
+    /// As they fill a width, with as few places left empty in the last row as can be, and about as large as they were made.
+    fn within(room: f32, count: usize) -> Self {
+        let made = SIZE[0] as f32;
+        let width = |columns: usize| (room + GAP) / columns as f32 - GAP;
+        let fits = |columns: &usize| WIDTHS.contains(&(width(*columns) / made));
+        let empty = |columns: usize| if count < columns { 0 } else { (columns - count % columns) % columns };
+        let off = |columns: usize| (width(columns) / made).ln().abs();
+        let best = (1..=MOST_COLUMNS)
+            .filter(fits)
+            .min_by(|&a, &b| empty(a).cmp(&empty(b)).then(off(a).total_cmp(&off(b))));
+        match best {
+            Some(columns) => Self { columns, width: width(columns) },
+            // Narrower than one, or wider than all.
+            None if room < made => Self { columns: 1, width: room.max(1.0) },
+            None => Self { columns: MOST_COLUMNS, width: made },
+        }
+    }
+}
+
 /// A candidate and its small picture, on the GPU of the window.
 struct Print {
     name: String,
@@ -181,7 +215,7 @@ impl ContactSheet {
     pub(crate) fn ui(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) -> Result<(), String> {
         let outcome = self.take(ctx);
         let mut open = self.open;
-        let default_width = COLUMNS as f32 * (SIZE[0] as f32 + 8.0);
+        let default_width = COLUMNS as f32 * (SIZE[0] as f32 + GAP);
         let tool = Tool { title: self.sheet.title(), default_pos: [60.0, 60.0], default_width };
         tool.show(ctx, &mut open, |ui| {
             ui.horizontal(|ui| {
@@ -203,15 +237,15 @@ impl ContactSheet {
             let most = (ctx.content_rect().height() - AROUND).max(LEAST_HEIGHT);
             let area = egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most);
             area.show(ui, |ui| {
-                let columns = ((ui.available_width() + 8.0) / (SIZE[0] as f32 + 8.0)) as usize;
-                let columns = columns.clamp(1, MOST_COLUMNS);
-                egui::Grid::new("contact sheet").spacing([8.0, 8.0]).show(ui, |ui| {
+                let count = self.trying.as_ref().map_or(0, |trying| trying.count).max(self.prints.len());
+                let Tiles { columns, width } = Tiles::within(ui.available_width(), count);
+                let size = vec2(width, width * SIZE[1] as f32 / SIZE[0] as f32);
+                egui::Grid::new("contact sheet").spacing([GAP, GAP]).show(ui, |ui| {
                     for (at, tried) in self.prints.iter().enumerate() {
                         if at > 0 && at % columns == 0 {
                             ui.end_row();
                         }
                         ui.vertical(|ui| {
-                            let size = vec2(SIZE[0] as f32, SIZE[1] as f32);
                             let image = egui::Image::new((tried.texture.id(), size));
                             // What is for other data is there, and no more.
                             let tint = if tried.fits {
@@ -261,6 +295,23 @@ mod tests {
     /// The flag of the thread that makes pictures, if one does.
     fn flag(sheet: &ContactSheet) -> Option<Arc<AtomicBool>> {
         sheet.trying.as_ref().map(|trying| Arc::clone(&trying.is_unwanted))
+    }
+
+    #[test]
+    fn pictures_fill_their_window() {
+        let tiles = |room: f32, count: usize| Tiles::within(room, count);
+        for room in 132..2000 {
+            for count in [1, 3, 4, 10, 12, 22] {
+                let Tiles { columns, width } = tiles(room as f32, count);
+                let taken = columns as f32 * (width + GAP) - GAP;
+                assert!((taken - room as f32).abs() < 1e-2, "{count} in {room}: {columns} × {width}");
+                assert!((width / SIZE[0] as f32) < 1.36, "{count} in {room}: {width}");
+            }
+        }
+        // Ten pictures in a window that has room for almost four: none stands alone.
+        assert_eq!(tiles(720.0, 10).columns, 5);
+        assert_eq!(tiles(728.0, 12).columns, 4);
+        assert_eq!(tiles(100.0, 10), Tiles { columns: 1, width: 100.0 });
     }
 
     #[test]

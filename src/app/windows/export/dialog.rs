@@ -38,14 +38,18 @@ const ENDINGS: [&str; 5] = ["png", "apng", "exr", "gif", "mp4"];
 
 impl Export {
     /// Shows the window if it is open.
-    pub(in crate::app) fn ui(&mut self, ctx: &egui::Context, viewport: [u32; 2]) -> Option<Request> {
+    ///
+    /// `is_anatomical`: the volume says which side of a body is where.
+    pub(in crate::app) fn ui(
+        &mut self,
+        ctx: &egui::Context,
+        viewport: [u32; 2],
+        is_anatomical: bool,
+    ) -> Option<Request> {
         let mut request = None;
         let mut open = self.open;
         let tool = Tool { title: text::export::TITLE, default_pos: [160.0, 90.0], default_width: 440.0 };
-        if open && !dock::docked(ctx).contains(tool.title) {
-            shortcuts::reserve_letters(ctx);
-        }
-        tool.show(ctx, &mut open, |ui| {
+        tool.show_dialog(ctx, &mut open, |ui| {
             ui.horizontal(|ui| {
                 for (kind, Named { name, tip }) in KINDS {
                     if ui.selectable_label(self.kind == kind, name).on_hover_text(tip).clicked() {
@@ -66,17 +70,7 @@ impl Export {
             if response.on_disabled_hover_text(text::export::NOT_TRANSPARENT_TIP).changed() {
                 self.shot.transparent = left_out;
             }
-            ui.horizontal(|ui| {
-                ui.label(text::export::MARKS);
-                let Marks { scale_bar, letters, legend } = &mut self.shot.marks;
-                for (on, Named { name, tip }) in [
-                    (scale_bar, text::export::SCALE_BAR),
-                    (letters, text::export::LETTERS),
-                    (legend, text::export::LEGEND),
-                ] {
-                    ui.checkbox(on, name).on_hover_text(tip);
-                }
-            });
+            self.marks_ui(ui, is_anatomical);
             ui.horizontal(|ui| {
                 let label = ui.label(text::export::FILE);
                 let field = egui::TextEdit::singleline(&mut self.path).desired_width(320.0);
@@ -108,6 +102,22 @@ impl Export {
         });
         self.open = open;
         request
+    }
+
+    /// What is written over the picture.
+    fn marks_ui(&mut self, ui: &mut Ui, is_anatomical: bool) {
+        ui.horizontal_wrapped(|ui| {
+            ui.label(text::export::MARKS);
+            let Marks { scale_bar, letters, legend } = &mut self.shot.marks;
+            ui.checkbox(scale_bar, text::export::SCALE_BAR.name).on_hover_text(text::export::SCALE_BAR.tip);
+            let mut are_drawn = *letters && is_anatomical;
+            let switch = egui::Checkbox::new(&mut are_drawn, text::export::LETTERS.name);
+            let response = ui.add_enabled(is_anatomical, switch).on_hover_text(text::export::LETTERS.tip);
+            if response.on_disabled_hover_text(text::export::NO_LETTERS_TIP).changed() {
+                *letters = are_drawn;
+            }
+            ui.checkbox(legend, text::export::LEGEND.name).on_hover_text(text::export::LEGEND.tip);
+        });
     }
 
     /// Where the file goes, if the name does not say all of it.

@@ -153,10 +153,9 @@ impl Export {
         (total > 1 && done > 0).then(|| self.began.elapsed() * total.saturating_sub(done) / done)
     }
 
-    /// The shape of the picture that would be made, as width over height, while the window asks.
-    pub(crate) fn shape(&self) -> Option<f64> {
-        let [width, height] = self.shot.size.map(f64::from);
-        (self.open && width > 0.0 && height > 0.0).then(|| width / height)
+    /// The picture that would be made, while the window asks.
+    pub(crate) fn asked(&self) -> Option<ImageSpec> {
+        (self.open && !self.shot.size.contains(&0)).then_some(self.shot)
     }
 
     /// Ends what is being made.

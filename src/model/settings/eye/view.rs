@@ -97,6 +97,27 @@ impl Camera {
         self.roll_deg = 0.0;
     }
 
+    /// As [`Self::look_from`] at a body, whose front is known: a corner is one of those between its front and its head.
+    pub fn look_at_body(&mut self, view: StandardView) {
+        self.look_from(view);
+        if view != StandardView::Isometric {
+            return;
+        }
+        // Of the scene of a body, +y is its front and +z its head.
+        let shows = |camera: &Self| {
+            let eye = camera.scene_from_view().z_axis;
+            eye.y + eye.z
+        };
+        let [first, _] = view.angles_deg();
+        for quarter in 1..4 {
+            let other = Self { azimuth_deg: (first + 90.0 * f64::from(quarter)) % 360.0, ..self.clone() };
+            // Two corners show as much; rounding does not choose between them.
+            if shows(&other) > shows(self) + 1e-9 {
+                *self = other;
+            }
+        }
+    }
+
     /// Perspective or orthographic, whichever it is not.
     pub fn toggle_projection(&mut self) {
         self.projection = match self.projection {
@@ -143,6 +164,24 @@ impl Camera {
 mod tests {
     use super::*;
     use crate::model::Fit;
+
+    #[test]
+    fn the_corner_of_a_body_shows_its_front_and_its_head() {
+        for up in SceneAxis::ALL {
+            let mut camera = Camera { up, ..Camera::default() };
+            camera.look_at_body(StandardView::Isometric);
+            let eye = camera.scene_from_view().z_axis;
+            // As much of a third axis, to the right or to the left of the body.
+            assert!(eye.abs().abs_diff_eq(DVec3::splat(3f64.sqrt().recip()), 1e-9), "{up:?}: {eye}");
+            let is_lying_down = matches!(up, SceneAxis::MinusY | SceneAxis::MinusZ);
+            assert!(is_lying_down || (eye.y > 0.0 && eye.z > 0.0), "{up:?}: {eye}");
+        }
+        // Sides are what they are.
+        let (mut body, mut other) = (Camera::default(), Camera::default());
+        body.look_at_body(StandardView::PlusX);
+        other.look_from(StandardView::PlusX);
+        assert_eq!(body, other);
+    }
 
     #[test]
     fn sides_are_seen_from_where_their_names_say() {
