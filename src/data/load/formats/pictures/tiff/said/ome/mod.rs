@@ -24,6 +24,9 @@ use pages::Pages;
 /// Bytes of XML that are read at most: of ten thousand files it has a few million.
 pub(in super::super) const MOST_XML_BYTES: u64 = xml::MOST_BYTES as u64;
 
+/// Images that are offered at most: a plate of 1536 wells with ten fields each has as many.
+const MOST_IMAGES: usize = 1 << 14;
+
 /// Whether a description is OME's XML.
 pub(in super::super) fn is_ome(description: &str) -> bool {
     // After a byte order mark, a declaration and a comment, which writers put there.
@@ -132,6 +135,10 @@ fn of_root(
     };
     let images: Vec<(Node<'_, '_>, Node<'_, '_>)> =
         children(root, "Image").filter_map(|image| Some((image, child(image, "Pixels")?))).collect();
+    if images.len() > MOST_IMAGES {
+        let why = format!("there are {} images, and {MOST_IMAGES} are read at most", images.len());
+        return Err(attempt.limit("Image", why, "split the file into several"));
+    }
     let named = |image: Node<'_, '_>| image.attribute("Name").unwrap_or_default().to_owned();
     let offers: Vec<Offer> = images
         .iter()
