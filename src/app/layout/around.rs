@@ -47,9 +47,13 @@ impl App {
                 commands,
             },
         );
-        let exporting = self.export.progress_unseen();
+        let busy = status::Busy {
+            opening: self.loader.progress(),
+            reading: self.file_tasks.path(),
+            exporting: self.export.progress_unseen(),
+        };
         let went = self.history.went(&self.settings);
-        status::show(ui, facts, self.loader.progress(), exporting, went, &mut self.messages, commands);
+        status::show(ui, facts, busy, went, &mut self.messages, commands);
         if let Some(volume) = &self.volume {
             let panel = egui::Panel::bottom("transfer").resizable(true).default_size(theme::EDITOR_HEIGHT);
             let panel = panel.frame(theme::panel(ui));

@@ -1,5 +1,7 @@
 //! The status bar: what is shown, on what, how fast, and what is being done.
 
+use std::path::Path;
+
 use eframe::egui::{self, ProgressBar, RichText};
 
 use super::messages::Messages;
@@ -14,12 +16,22 @@ use crate::data::plain;
 /// Characters of a path in the bar: more than the widest screen shows.
 const LONGEST_PATH: usize = 500;
 
+/// Work that can be cancelled in the bar.
+#[derive(Debug)]
+pub(crate) struct Busy<'a> {
+    /// The volume that is being opened.
+    pub opening: Option<LoadProgress<'a>>,
+    /// Another file that is being read.
+    pub reading: Option<&'a Path>,
+    /// The export whose window is closed.
+    pub exporting: Option<Unseen>,
+}
+
 /// Shows the bar. `went`: the last step back or forward.
 pub(crate) fn show(
     ui: &mut egui::Ui,
     facts: &Facts,
-    opening: Option<LoadProgress<'_>>,
-    exporting: Option<Unseen>,
+    Busy { opening, reading, exporting }: Busy<'_>,
     went: Option<&str>,
     messages: &mut Messages,
     commands: &mut Vec<Command>,
@@ -37,9 +49,12 @@ pub(crate) fn show(
                     bytes,
                     &plain(&source.to_string_lossy(), LONGEST_PATH),
                 ));
-                if ui.small_button(&*Command::CancelOpening.label()).clicked() {
-                    commands.push(Command::CancelOpening);
-                }
+                cancel(ui, commands);
+            } else if let Some(path) = reading {
+                ui.spinner();
+                let path = plain(&path.to_string_lossy(), LONGEST_PATH);
+                ui.label(text::status::opening(text::opening::READING, None, &path));
+                cancel(ui, commands);
             } else {
                 doing(ui, facts.doing);
                 if let Some(went) = went {
@@ -67,6 +82,13 @@ pub(crate) fn show(
             });
         });
     });
+}
+
+/// The button that ends reading and opening.
+fn cancel(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    if ui.small_button(&*Command::CancelOpening.label()).clicked() {
+        commands.push(Command::CancelOpening);
+    }
 }
 
 /// How far an export is, whose window may be closed.
