@@ -219,13 +219,14 @@ fn files_that_unfold_to_a_gibibyte_are_spoken_of_and_thinned_for_a_glance() {
     let base = folder.run("info builtin:box:16");
     let outcome = folder.run("info zeros.nrrd");
     assert_eq!((base.code, outcome.code), (Some(0), Some(0)), "{outcome:?}");
-    for words in ["of files unfold to 1024 × 1024 × 1024 voxels in 1.0 GiB", "of every 2", "--every 1"] {
+    for words in ["of files unfold to 1024 × 1024 × 1024 voxels in 1.0 GiB", "of every 3", "--every 1"] {
         assert!(outcome.stderr.contains(words), "{words}: {outcome:?}");
     }
-    assert!(outcome.stdout.contains("512 × 512 × 512, uint8"), "{outcome:?}");
+    assert!(outcome.stdout.contains("342 × 342 × 342, uint8"), "{outcome:?}");
     assert!(outcome.stdout.contains("1024 × 1024 × 1024"), "{outcome:?}");
     // Whoever says how much is read knows what it is.
     let outcome = folder.run("info zeros.nrrd --every 64");
-    assert_eq!((outcome.code, outcome.stderr.as_str()), (Some(0), ""), "{outcome:?}");
+    assert_eq!(outcome.code, Some(0), "{outcome:?}");
+    assert!(!outcome.stderr.contains("unfold"), "{outcome:?}");
     assert!(outcome.stdout.contains("16 × 16 × 16, uint8"), "{outcome:?}");
 }

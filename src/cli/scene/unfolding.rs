@@ -16,7 +16,7 @@ const SMALL_BYTES: u64 = 1 << 30;
 const USUAL_RATIO: u64 = 256;
 
 /// Bytes of voxels that are read for a look at the values: a moment's work, and enough for percentiles.
-const GLANCE_BYTES: u64 = 256 << 20;
+const GLANCE_BYTES: u64 = 64 << 20;
 
 /// Bytes of a file that may be no more than the description of others.
 const DESCRIPTION_BYTES: u64 = 64 << 10;
@@ -115,7 +115,7 @@ mod tests {
         // Forty slices of 16000² zeros in 10 MB.
         let slices = size([16_000, 16_000, 40]);
         assert_eq!(unfolds(Some(10_000_000), &slices), Some(10_000_000));
-        assert_eq!(glance(&slices), Some(4));
+        assert_eq!(glance(&slices), Some(6));
         let words = in_words(10_000_000, &slices);
         assert_eq!(words, "9.5 MiB of files unfold to 16000 × 16000 × 40 voxels in 9.5 GiB");
         // As much in files that compress no better than photographs, little, and what is not known.

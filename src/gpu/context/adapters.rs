@@ -22,8 +22,9 @@ const LONGEST_NAME: usize = 80;
 /// When there is none.
 pub(super) fn fastest() -> Result<wgpu::Adapter, GpuError> {
     let asked = |variable: &str| std::env::var(variable).ok().filter(|value| !value.is_empty());
-    let enabled = wgpu::Instance::enabled_backend_features();
-    let backends = wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY) & enabled;
+    // Others may be compiled in by other packages, and cannot draw volumes.
+    let enabled = wgpu::Instance::enabled_backend_features() & wgpu::Backends::PRIMARY;
+    let backends = wgpu::Backends::from_env().unwrap_or(enabled) & enabled;
     if backends.is_empty() {
         return Err(no_interface(&asked(BACKEND).unwrap_or_default(), enabled));
     }
