@@ -4,7 +4,7 @@ use std::io::Write as _;
 use std::process::ExitCode;
 
 use chiaroscuro::cli::{self, CliError, ViewerRequest};
-use chiaroscuro::data::without_controls;
+use chiaroscuro::data::one_line;
 
 fn main() -> ExitCode {
     name_runtime_folder();
@@ -12,7 +12,7 @@ fn main() -> ExitCode {
     // Drivers and files have their words in it.
     env_logger::Builder::from_env(quiet)
         .format(|out, record| {
-            let text = without_controls(&record.args().to_string());
+            let text = one_line(&record.args().to_string());
             let level = record.level().as_str().to_lowercase();
             // Whoever reads what this program says need not know where in it that was written.
             match record.target().split("::").next() {
@@ -44,6 +44,28 @@ fn name_runtime_folder() {
 
 #[cfg(not(target_os = "linux"))]
 fn name_runtime_folder() {}
+
+/// A look at standard output before Rust's runtime, which opens /dev/null in its place where it is closed (`>&-`): what is
+/// written would be lost without an error.
+#[cfg(target_os = "linux")]
+#[expect(
+    unsafe_code,
+    reason = "nothing that is safe runs before the runtime, and afterwards nothing can be told"
+)]
+mod before_main {
+    extern "C" fn look_at_output() {
+        // SAFETY: asks for the flags of a descriptor, whatever that is, and changes nothing.
+        if unsafe { libc::fcntl(libc::STDOUT_FILENO, libc::F_GETFD) } == -1 {
+            chiaroscuro::cli::note_closed_output();
+        }
+    }
+
+    // SAFETY: the loader calls each function of this section once, before `main` and on its thread; this one needs nothing
+    // of the runtime.
+    #[used]
+    #[unsafe(link_section = ".init_array")]
+    static LOOK: extern "C" fn() = look_at_output;
+}
 
 #[cfg(feature = "window")]
 fn open_window(request: ViewerRequest) -> Result<(), CliError> {

@@ -3,7 +3,8 @@
 //! Panels change one [`Settings`] value; the viewport turns it into a picture. Whatever renders does so on a thread
 //! beside the window's: the render worker, the loader, the search for lights, exports, contact sheets, slices of light
 //! volumes, and the measurement of the brightness. So does what goes through all voxels: first looks for another kind of
-//! data, and of an object that stands another way up. Panels see settings and read-only facts.
+//! data, and of an object that stands another way up; and what reads files of others, looks and sessions included.
+//! Panels see settings and read-only facts.
 
 mod common;
 mod kept;
@@ -32,8 +33,9 @@ use std::time::Duration;
 use eframe::egui;
 
 use self::common::give_up::GiveUp;
-use self::common::{light_keys, reveal, shortcuts};
-use self::shell::{status_file, surroundings};
+use self::common::{light_keys, shortcuts};
+use self::shell::file_tasks::FileTasks;
+use self::shell::status_file;
 use self::windows::files;
 
 use self::common::commands::Command;
@@ -122,7 +124,7 @@ pub struct App {
     /// Settings of the volume that is being opened.
     pending: Option<PendingLook>,
     balance: Option<Work<Result<f64, GpuError>>>,
-    surroundings: Option<surroundings::Reading>,
+    file_tasks: FileTasks,
     keep_balanced: KeepBalanced,
     first_lights: FirstLights,
     light_search: Option<Seeking>,
@@ -221,14 +223,12 @@ impl App {
         self.treated.is_busy() || self.upright.is_busy()
     }
 
-    /// Whether the full-quality picture of the current settings is on screen and nothing is being opened or corrected.
+    /// Whether the full-quality picture of the current settings is on screen and nothing is being opened, read or corrected.
     fn is_complete(&self) -> bool {
-        self.has_its_volume() && self.viewport.is_idle(&self.compare.looks(&self.settings))
-    }
-
-    /// Whether nothing is being opened or corrected.
-    fn has_its_volume(&self) -> bool {
-        self.loader.progress().is_none() && !self.is_correcting()
+        self.loader.progress().is_none()
+            && self.file_tasks.path().is_none()
+            && !self.is_correcting()
+            && self.viewport.is_idle(&self.compare.looks(&self.settings))
     }
 
     /// Where the picture is, in points, and its size in physical pixels.
@@ -328,6 +328,7 @@ impl eframe::App for App {
             self.execute(command, frame, &ctx);
         }
         self.turning.begin(&before, &self.settings.camera, ctx.input(|input| input.time));
+        self.cancel_files_by_key(&ctx);
         self.leave_picture_only(&ctx);
         self.follow_corrections(&ctx);
         self.finish_first_look(&ctx);
@@ -345,7 +346,7 @@ impl eframe::App for App {
         let state = status_file::State {
             longest_ui_ms: self.longest_ui_ms,
             response: self.viewport.response(),
-            loading: self.loader.progress().is_some(),
+            loading: self.loader.progress().is_some() || self.file_tasks.path().is_some(),
             idle,
             canvas: self.canvas.filter(|_| self.volume.is_some()),
             handles: self.handles.positions(),

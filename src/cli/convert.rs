@@ -6,9 +6,9 @@ use clap::Args;
 
 use super::CliError;
 use super::outputs::{destination, finish, keep_apart, warn_line};
-use super::scene::{LoadArgs, parse_voxel_type};
-use crate::data::load::{Explanation, LoadControl, LoadError, ReadFiles};
-use crate::data::{Headings, ValueRange, VoxelType, open};
+use super::scene::{LoadArgs, open_with_word, parse_voxel_type};
+use crate::data::load::{Explanation, LoadError, ReadFiles};
+use crate::data::{Headings, ValueRange, VoxelType};
 use crate::export::{ConvertError, NumberWish, Outgoing, VolumeFormat, check_writable, write_volume};
 
 /// What standard output is for.
@@ -137,7 +137,7 @@ pub(super) fn run(args: &ConvertArgs) -> Result<(), CliError> {
     // Before anything is read that may take its time.
     check_writable(output.path())?;
     let read = ReadFiles::watch();
-    let volume = open(&args.input, &args.load.load_options()?, &LoadControl::new()).map_err(in_own_words)?;
+    let volume = open_with_word(&args.input, &args.load.load_options()?).map_err(in_own_words)?;
     // A header has named others, a slice or a folder has brought its series.
     let read = read.paths();
     keep_apart(&read.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[&args.output], args.force)?;

@@ -7,9 +7,8 @@ use serde_json::{Value, json};
 
 use super::CliError;
 use super::outputs::print_line;
-use super::scene::{LoadArgs, corrected_by};
-use crate::data::load::LoadControl;
-use crate::data::{CountedLabel, DataKind, Dataset, Hints, SpacingUnit, ValueRange, Volume, open};
+use super::scene::{LoadArgs, corrected_by, open_for_a_glance};
+use crate::data::{CountedLabel, DataKind, Dataset, Hints, SpacingUnit, ValueRange, Volume};
 use crate::gpu::{bytes_with_one_light, small_volume};
 use crate::model::auto;
 
@@ -36,7 +35,7 @@ pub(super) struct InfoArgs {
 
 /// Prints what is known about a volume.
 pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
-    let volume = open(&args.file, &args.load.load_options()?, &LoadControl::new())?;
+    let volume = open_for_a_glance(&args.file, &args.load.load_options()?)?;
     let volume = corrected_by(&args.file, volume, &args.set)?;
     let ValueRange { low, high } = volume.value_range();
     let shown = volume.shown_range();

@@ -21,7 +21,8 @@ use clap::{Parser, Subcommand};
 
 use crate::fault::{self, Fault};
 pub use error::CliError;
-use outputs::warn_line;
+use outputs::{print_line, warn_line, warn_lines};
+pub use process::note_closed_output;
 use scene::LoadArgs;
 
 use crate::export::may_carry_record;
@@ -118,10 +119,13 @@ pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> 
     let args = match Args::try_parse() {
         Ok(args) => args,
         Err(err) => {
-            // Help and version are no errors: clap prints them to standard output.
-            let code = if err.use_stderr() { 2 } else { 0 };
-            err.print().ok();
-            return code;
+            let text = err.render().to_string();
+            if err.use_stderr() {
+                warn_lines(text.trim_end());
+                return 2;
+            }
+            // Help and version are no errors.
+            return exit_code(print_line(text.trim_end()));
         }
     };
     fault::choose(args.fault.clone());
@@ -137,6 +141,11 @@ pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> 
         Some(Command::Bench(args)) => bench::run(&args),
         None => args.request().and_then(open_window),
     });
+    exit_code(result)
+}
+
+/// The exit code of a command that has ended, after a word about what went wrong.
+fn exit_code(result: Result<(), CliError>) -> u8 {
     match result {
         Ok(()) => 0,
         Err(err) => {

@@ -5,7 +5,8 @@ use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::CliError;
-use crate::data::without_controls;
+use super::process::is_output_closed;
+use crate::data::{one_line, without_controls};
 use crate::export::{Destination, is_ours};
 
 /// Refuses names under which a command would replace what it reads, or what else it writes, whatever they are called,
@@ -67,9 +68,22 @@ impl Identity {
 /// Where something goes: to a file of that name, or to standard output as a file of some ending.
 ///
 /// # Errors
-/// When the system has no room for temporary files.
+/// When the system has no room for temporary files, or standard output is closed.
 pub(super) fn destination(name: &Path, ending: &str) -> Result<Destination, CliError> {
-    Destination::new(name, ending).map_err(CliError::Output)
+    let to = Destination::new(name, ending).map_err(CliError::Output)?;
+    if to.is_standard_output() {
+        check_output()?;
+    }
+    Ok(to)
+}
+
+/// Whether anything can be written to standard output.
+///
+/// # Errors
+/// When it was closed before the program was started.
+fn check_output() -> Result<(), CliError> {
+    let closed = || CliError::Output(std::io::Error::other("it is closed"));
+    if is_output_closed() { Err(closed()) } else { Ok(()) }
 }
 
 /// What has been written goes to standard output if it is for that.
@@ -96,15 +110,22 @@ pub(super) fn finish(to: Destination) -> Result<(), CliError> {
 /// # Errors
 /// When what is behind it takes no more.
 pub(super) fn print_line(text: &str) -> Result<(), CliError> {
-    match writeln!(std::io::stdout(), "{}", without_controls(text)) {
+    check_output()?;
+    let mut out = std::io::stdout();
+    match writeln!(out, "{}", without_controls(text)).and_then(|()| out.flush()) {
         Err(err) if err.kind() != ErrorKind::BrokenPipe => Err(CliError::Output(err)),
         _ => Ok(()),
     }
 }
 
-/// Prints a line to standard error.
+/// Prints a message to standard error, on one line whatever is in it.
 pub(super) fn warn_line(text: &str) {
     // Nothing can be done when it is closed.
+    writeln!(std::io::stderr(), "{}", one_line(text)).ok();
+}
+
+/// Prints lines to standard error: what is said of wrong arguments.
+pub(super) fn warn_lines(text: &str) {
     writeln!(std::io::stderr(), "{}", without_controls(text)).ok();
 }
 

@@ -205,3 +205,28 @@ fn too_few_addresses_are_an_error_and_no_crash() {
         );
     }
 }
+
+#[test]
+fn files_that_unfold_to_a_gibibyte_are_spoken_of_and_thinned_for_a_glance() {
+    use std::io::Write as _;
+    // Zeros as 512 members of gzip, of 2 MiB each.
+    let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+    encoder.write_all(&vec![0; 2 << 20]).expect("memory");
+    let member = encoder.finish().expect("memory");
+    let header = "NRRD0004\ntype: uint8\ndimension: 3\nencoding: gzip\nsizes: 1024 1024 1024\n\n";
+    let folder = Folder::new();
+    folder.write("zeros.nrrd", [header.as_bytes(), &member.repeat(512)].concat());
+    let base = folder.run("info builtin:box:16");
+    let outcome = folder.run("info zeros.nrrd");
+    assert_eq!((base.code, outcome.code), (Some(0), Some(0)), "{outcome:?}");
+    for words in ["of files unfold to 1024 × 1024 × 1024 voxels in 1.0 GiB", "of every 3", "--every 1"] {
+        assert!(outcome.stderr.contains(words), "{words}: {outcome:?}");
+    }
+    assert!(outcome.stdout.contains("342 × 342 × 342, uint8"), "{outcome:?}");
+    assert!(outcome.stdout.contains("1024 × 1024 × 1024"), "{outcome:?}");
+    // Whoever says how much is read knows what it is.
+    let outcome = folder.run("info zeros.nrrd --every 64");
+    assert_eq!(outcome.code, Some(0), "{outcome:?}");
+    assert!(!outcome.stderr.contains("unfold"), "{outcome:?}");
+    assert!(outcome.stdout.contains("16 × 16 × 16, uint8"), "{outcome:?}");
+}

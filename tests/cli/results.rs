@@ -94,16 +94,94 @@ fn only_files_are_replaced() {
     assert!(kind.is_socket(), "it is what it was");
 }
 
+/// Exit code and standard error of a command that a shell starts, with `$B` for the program.
+#[cfg(unix)]
+fn shell(folder: &Folder, script: &str) -> (Option<i32>, String) {
+    let output = std::process::Command::new("sh")
+        .args(["-c", script])
+        .env("B", env!("CARGO_BIN_EXE_chiaroscuro"))
+        .current_dir(folder.path(""))
+        .output()
+        .expect("a shell");
+    (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_standard_output_is_an_error() {
-    let full = fs::OpenOptions::new().write(true).open("/dev/full").expect("the device that is always full");
-    let status = std::process::Command::new(env!("CARGO_BIN_EXE_chiaroscuro"))
-        .args(["info", "builtin:sphere:16", "--json"])
-        .stdout(full)
-        .status()
-        .expect("the program can be started");
-    assert_eq!(status.code(), Some(6));
+fn a_standard_output_that_is_full_or_closed_is_an_error() {
+    let folder = Folder::new();
+    for args in [
+        "info builtin:sphere:16",
+        "info builtin:sphere:16 --json",
+        "convert builtin:sphere:16 -",
+        "render builtin:sphere:16 --size 16x12 -o -",
+        "--version",
+        "--help",
+        "help",
+        "help render",
+        "render --help",
+    ] {
+        for to in [">/dev/full", ">&-"] {
+            let (code, said) = shell(&folder, &format!("$B {args} {to}"));
+            assert_eq!(code, Some(6), "{args} {to}: {said}");
+            assert!(said.contains("could not write to standard output"), "{args} {to}: {said}");
+        }
+        // What is thrown away is no error, however that was opened.
+        for to in [">/dev/null", "<>/dev/null 1>&0"] {
+            let (code, said) = shell(&folder, &format!("$B {args} {to}"));
+            assert_eq!(code, Some(0), "{args} {to}: {said}");
+        }
+    }
+    assert_eq!(folder.names(), Vec::<String>::new());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_limit_of_file_sizes_is_a_full_disk() {
+    let folder = Folder::new();
+    let (code, said) = shell(&folder, "ulimit -f 4; $B convert builtin:sphere:64 f.nrrd");
+    assert_eq!(code, Some(6), "{said}");
+    assert!(said.contains("f.nrrd") && said.starts_with("error: "), "{said}");
+    assert_eq!(folder.names(), Vec::<String>::new(), "nothing unfinished stays");
+}
+
+#[test]
+fn what_is_said_of_an_error_is_one_line() {
+    let folder = Folder::new();
+    image::RgbImage::from_fn(64, 32, |x, y| image::Rgb([x as u8, y as u8, 7]))
+        .save(folder.path("whole.jpg"))
+        .expect("the folder can be written to");
+    folder.write("cut.jpg", &folder.read("whole.jpg")[..400]);
+    let render = "render builtin:box:16 --size 16x16 -o out.png";
+    for (args, code) in [("--surroundings cut.jpg", 3), ("--fault shader", 4)] {
+        let outcome = folder.run(&format!("{render} {args}"));
+        assert_eq!(outcome.code, Some(code), "{outcome:?}");
+        let message = outcome.message().expect("a message");
+        assert_eq!(message.trim_end_matches('\n').lines().count(), 1, "{message}");
+        assert!(outcome.stderr.lines().all(|line| !line.trim().is_empty()), "{outcome:?}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn the_environment_is_named_where_it_hides_the_adapters() {
+    let folder = Folder::new();
+    let render = "render builtin:box:16 --size 16x16 -o out.png";
+    let said = folder.fail_with(render, 4, &[("WGPU_ADAPTER_NAME", "nothing")]);
+    assert!(said.contains("no adapter is called \"nothing\" (WGPU_ADAPTER_NAME): there are \""), "{said}");
+    let said = folder.fail_with(render, 4, &[("WGPU_BACKEND", "gl")]);
+    assert!(said.contains("WGPU_BACKEND is \"gl\"") && said.contains("vulkan"), "{said}");
+}
+
+#[cfg(all(target_os = "linux", feature = "window"))]
+#[test]
+fn without_a_display_the_reason_is_told_without_places_in_libraries() {
+    let folder = Folder::new();
+    let (code, said) =
+        shell(&folder, "env -u DISPLAY -u WAYLAND_DISPLAY -u WAYLAND_SOCKET $B builtin:box:16");
+    assert_eq!(code, Some(4), "{said}");
+    assert!(said.contains("DISPLAY is set"), "{said}");
+    assert!(!said.contains(".rs:") && !said.contains("registry"), "{said}");
 }
 
 #[test]

@@ -37,6 +37,9 @@ fn unknown_words_are_usage_errors() {
     }
     let said = folder.fail("render builtin:sphere:16 -o out.png --shadows sometimes", 2);
     assert!(said.contains("splat") && said.contains("off"), "the known words: {said}");
+    // Words of the command line are told, and cannot talk to the terminal.
+    let said = folder.fail("render builtin:sphere:16 -o out.png --no-such\u{1b}]0;taken\u{7}", 2);
+    assert!(said.contains("taken") && !said.contains(['\u{1b}', '\u{7}']), "{said:?}");
     let said = folder.fail("render builtin:nothing -o out.png", 3);
     assert!(said.contains("chair") && said.contains("marschner-lobb"), "the known volumes: {said}");
 }
@@ -50,6 +53,7 @@ fn unknown_settings_are_usage_errors_that_list_the_known_ones() {
     for known in ["strength", "gain", "bias"] {
         assert!(said.contains(known), "the known names: {said}");
     }
+    assert!(folder.fail(&format!("{render} schema=1"), 2).contains("at the top there are: "));
     let said = folder.fail(&format!("{render} no_such=1"), 2);
     assert!(said.contains("shadows") && said.contains("camera"), "the known names: {said}");
     for assignment in ["shadows.strength", "shadows.strength=much", "lights.99.intensity=1", "=1", ""] {

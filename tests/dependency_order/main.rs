@@ -2,6 +2,7 @@
 //! library stays in the window and the GPU library in the renderer; files say what they are and stay short, and
 //! folders can be taken in at a glance.
 
+mod advisories;
 mod circles;
 mod disk;
 mod form;

@@ -47,12 +47,13 @@ impl App {
                 commands,
             },
         );
-        let exporting = self.export.progress_unseen();
+        let busy = status::Busy {
+            opening: self.loader.progress(),
+            reading: self.file_tasks.path(),
+            exporting: self.export.progress_unseen(),
+        };
         let went = self.history.went(&self.settings);
-        let making = self.making();
-        let opening = self.loader.progress();
-        let status = status::Status { facts, opening, exporting, making, went };
-        status::show(ui, status, &mut self.messages, commands);
+        status::show(ui, facts, busy, went, &mut self.messages, commands);
         if let Some(volume) = &self.volume {
             // A table has a height of its own.
             let (name, height) = if volume.is_shown_by_label(&self.settings) {

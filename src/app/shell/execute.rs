@@ -16,7 +16,7 @@ use crate::app::worker::loader::Outcome;
 use crate::app::worker::task::Work;
 use crate::app::{App, panels};
 use crate::gpu::GpuError;
-use crate::model::{COLOR_MAPS, Camera, LabelTable, Settings};
+use crate::model::{COLOR_MAPS, Camera, Settings};
 
 impl App {
     /// Does what the user asked for.
@@ -38,7 +38,7 @@ impl App {
                 Some(path) => self.open_record(&path, ctx),
                 None => self.messages.note(text::messages::NOTHING_TO_GO_ON_WITH),
             },
-            Command::CancelOpening => self.loader.cancel(),
+            Command::CancelOpening => self.cancel_files(ctx),
             Command::SaveSettings => match self.session_to_save() {
                 Some(path) => self.save_settings(&path),
                 None => self.files.ask(Purpose::SaveSettings, frame, ctx),
@@ -223,7 +223,7 @@ impl App {
     pub(crate) fn collect(&mut self, ctx: &egui::Context) {
         match self.loader.take() {
             None => {}
-            Some(Outcome::Opened(opened)) => self.take_in(*opened, ctx),
+            Some(Outcome::Opened(opened)) => self.take_in_with_session(*opened, ctx),
             Some(Outcome::Shown { renderer, dataset }) => self.viewport.set_scene(*renderer, dataset),
             Some(Outcome::Cancelled) => {
                 self.pending = None;
@@ -241,7 +241,7 @@ impl App {
         }
         self.take_neighbour(ctx);
         self.take_treated(ctx);
-        self.take_surroundings();
+        self.take_files(ctx);
         if let Some(result) = self.balance.as_ref().and_then(Work::take) {
             self.balance = None;
             match result {
@@ -311,30 +311,16 @@ impl App {
                     Err(err) => self.messages.error(text::messages::LIGHT_VOLUME_NOT_EXPORTED, err),
                 }
             }
-            Purpose::LoadSettings => self.load_settings(path),
+            Purpose::LoadSettings => self.load_settings(path, ctx),
             Purpose::Surroundings => self.read_surroundings(path, ctx),
-            Purpose::ImportTransfer => {
-                match files::import_transfer(path, &self.settings, &self.value_ranges()) {
-                    Ok(function) => {
-                        self.settings.transfer = function;
-                        self.settings.labels = LabelTable::default();
-                    }
-                    Err(err) => self.messages.error(text::messages::TRANSFER_NOT_IMPORTED, err),
-                }
-            }
+            Purpose::ImportTransfer => self.import_transfer(path, ctx),
             Purpose::ExportTransfer => {
                 match files::export_transfer(path, &self.settings, &self.value_ranges()) {
                     Ok(()) => self.messages.note(text::messages::wrote(path)),
                     Err(err) => self.messages.error(text::messages::TRANSFER_NOT_WRITTEN, err),
                 }
             }
-            Purpose::CompareSettings => {
-                let read = files::load_record(path);
-                match read.and_then(|read| self.with_record(&read, &self.value_ranges())) {
-                    Ok(look) => self.compare.with(look),
-                    Err(err) => self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
-                }
-            }
+            Purpose::CompareSettings => self.compare_with_file(path, ctx),
         }
     }
 

@@ -2,6 +2,7 @@
 
 mod easing;
 pub(super) mod execute;
+pub(super) mod file_tasks;
 pub(super) mod first_lights;
 pub(super) mod history;
 pub(super) mod keep_balanced;
@@ -13,4 +14,3 @@ pub(super) mod picture;
 pub(super) mod session;
 pub(super) mod status;
 pub(super) mod status_file;
-pub(super) mod surroundings;

@@ -41,8 +41,8 @@ impl Session {
     }
 
     /// What was found there.
-    pub(crate) fn found(&mut self, record: Result<&Record, &String>) {
-        let Ok(record) = record else {
+    pub(crate) fn found(&mut self, record: Option<&Record>) {
+        let Some(record) = record else {
             self.protected = Some(text::memory::NO_SESSION);
             return;
         };

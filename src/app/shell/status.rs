@@ -1,6 +1,8 @@
 //! The status bar: what the user waits for, what was undone, and behind a click what pictures cost.
 
-use eframe::egui::{self, ProgressBar, RichText, TextStyle};
+use std::path::Path;
+
+use eframe::egui::{self, ProgressBar, RichText};
 
 use super::messages::Messages;
 use crate::app::common::commands::Command;
@@ -15,38 +17,46 @@ use crate::data::plain;
 /// Characters of a path in the bar: more than the widest screen shows.
 const LONGEST_PATH: usize = 500;
 
-/// Points of the last step back or forward: a name of a light may be long.
-const LONGEST_STEP: f32 = 260.0;
-
-/// Points for the buttons at the right of the bar.
-const BUTTONS: f32 = 200.0;
-
-/// What the status bar shows.
-pub(crate) struct Status<'a> {
-    /// What is known of the renderer's work.
-    pub facts: &'a Facts,
-    /// A volume that is being opened.
+/// Work that can be cancelled in the bar.
+#[derive(Debug)]
+pub(crate) struct Busy<'a> {
+    /// The volume that is being opened.
     pub opening: Option<LoadProgress<'a>>,
-    /// An export whose window is closed.
+    /// Another file that is being read.
+    pub reading: Option<&'a Path>,
+    /// The export whose window is closed.
     pub exporting: Option<Unseen>,
-    /// What else is being made, and is waited for.
-    pub making: Option<&'static str>,
-    /// The last step back or forward.
-    pub went: Option<&'a str>,
 }
 
-/// Shows the bar.
+/// Shows the bar. `went`: the last step back or forward.
 pub(crate) fn show(
     ui: &mut egui::Ui,
-    status: Status<'_>,
+    facts: &Facts,
+    Busy { opening, reading, exporting }: Busy<'_>,
+    went: Option<&str>,
     messages: &mut Messages,
     commands: &mut Vec<Command>,
 ) {
     let Status { facts, opening, exporting, making, went } = status;
     egui::Panel::bottom("status").resizable(false).frame(theme::panel(ui)).show(ui, |ui| {
         ui.horizontal(|ui| {
-            if let Some(opening) = opening {
-                progress_of_opening(ui, &opening, commands);
+            if let Some(LoadProgress { source, reading: _, phase, fraction, bytes }) = opening {
+                match fraction {
+                    Some(share) => ui.add(ProgressBar::new(share).desired_width(120.0).desired_height(8.0)),
+                    // A bar that stays empty looks stuck.
+                    None => ui.spinner(),
+                };
+                ui.label(text::status::opening(
+                    phase,
+                    bytes,
+                    &plain(&source.to_string_lossy(), LONGEST_PATH),
+                ));
+                cancel(ui, commands);
+            } else if let Some(path) = reading {
+                ui.spinner();
+                let path = plain(&path.to_string_lossy(), LONGEST_PATH);
+                ui.label(text::status::opening(text::opening::READING, None, &path));
+                cancel(ui, commands);
             } else {
                 doing(ui, facts.doing, making);
                 if let Some(went) = went {
@@ -76,18 +86,8 @@ pub(crate) fn show(
     });
 }
 
-/// How far a volume is that is being opened.
-fn progress_of_opening(ui: &mut egui::Ui, opening: &LoadProgress<'_>, commands: &mut Vec<Command>) {
-    let &LoadProgress { source, reading: _, phase, fraction, bytes } = opening;
-    match fraction {
-        Some(share) => ui.add(ProgressBar::new(share).desired_width(120.0).desired_height(8.0)),
-        // A bar that stays empty looks stuck.
-        None => ui.spinner(),
-    };
-    let words = text::status::opening(phase, bytes, &plain(&source.to_string_lossy(), LONGEST_PATH));
-    let room = ui.available_width() - BUTTONS;
-    let response = ui.label(elide_middle(ui, &words, &TextStyle::Body, room));
-    response.on_hover_text(words);
+/// The button that ends reading and opening.
+fn cancel(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     if ui.small_button(&*Command::CancelOpening.label()).clicked() {
         commands.push(Command::CancelOpening);
     }

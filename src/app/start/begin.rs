@@ -11,6 +11,7 @@ use crate::app::common::theme;
 use crate::app::kept::Strip;
 use crate::app::layout::Layout;
 use crate::app::memory::Memory;
+use crate::app::shell::file_tasks::FileTasks;
 use crate::app::shell::first_lights::FirstLights;
 use crate::app::shell::history::{History, Listed};
 use crate::app::shell::keep_balanced::KeepBalanced;
@@ -153,7 +154,7 @@ impl App {
             keeps_look: false,
             pending: None,
             balance: None,
-            surroundings: None,
+            file_tasks: FileTasks::default(),
             keep_balanced: KeepBalanced::new(&Settings::default(), true),
             first_lights: FirstLights::default(),
             light_search: None,

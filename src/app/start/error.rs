@@ -9,9 +9,38 @@ pub enum AppError {
     #[error(transparent)]
     Gpu(#[from] GpuError),
     /// The window system refused.
-    #[error("the window could not be opened: {0}; a running desktop session is needed")]
+    #[error("the window could not be opened: {}; a running desktop session is needed", cause(.0))]
     Window(#[from] eframe::Error),
     /// The operating system gave no thread.
     #[error("no thread could be started: {0}")]
     Thread(#[from] std::io::Error),
+}
+
+/// The window system's reason, without the place in the sources of its library where it was found, which is a path of the
+/// machine that has built the program: `winit EventLoopError: os error at FILE:LINE: REASON`.
+fn cause(error: &eframe::Error) -> String {
+    let text = error.to_string();
+    let Some((_, place)) = text.split_once("os error at ") else { return text };
+    let reason = place.split_once(".rs:").and_then(|(_, rest)| {
+        let (line, reason) = rest.split_once(": ")?;
+        line.bytes().all(|byte| byte.is_ascii_digit()).then(|| reason.trim_end_matches('.').to_owned())
+    });
+    reason.unwrap_or(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_in_libraries_are_no_reasons() {
+        let says = |text: &str| AppError::from(eframe::Error::AppCreation(text.into())).to_string();
+        let found = says(
+            "winit EventLoopError: os error at /home/a/.cargo/registry/b/mod.rs:757: neither A nor B is set.",
+        );
+        assert!(found.contains("could not be opened: neither A nor B is set; a running"), "{found}");
+        for other in ["no adapter", "os error at all", "os error at a.rs:x: b"] {
+            assert!(says(other).contains(other), "{other}");
+        }
+    }
 }

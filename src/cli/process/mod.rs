@@ -1,9 +1,12 @@
 //! This process: its signals, its threads, the time that it takes.
 
+mod closed_output;
 mod cpu_time;
 mod signals;
 mod threads;
 
+pub(super) use closed_output::is_output_closed;
+pub use closed_output::note_closed_output;
 pub(super) use cpu_time::process_cpu_ms;
 pub(super) use signals::listen;
 pub(super) use threads::start;

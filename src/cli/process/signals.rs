@@ -1,5 +1,8 @@
 //! What happens when the process is told to end: Ctrl+C, the end of the terminal, logging out.
 
+#[cfg(unix)]
+use std::sync::Arc;
+
 use crate::export::remove_unfinished;
 
 /// What shells have for a process that a signal has ended: this and the signal's number.
@@ -41,8 +44,12 @@ pub(in crate::cli) fn listen(last_acts: &'static [fn()]) {
 
 #[cfg(unix)]
 fn start(last_acts: &'static [fn()]) -> std::io::Result<()> {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
     use signal_hook::iterator::Signals;
+
+    // Beyond a limit of the user's (`ulimit -f`) the system would end the process; where the signal is taken, the write fails
+    // as on a full disk, and nothing unfinished stays.
+    signal_hook::flag::register(SIGXFSZ, Arc::default())?;
 
     let ignored = ignored_signals(&std::fs::read_to_string("/proc/self/status").unwrap_or_default());
     // Whoever starts this with `nohup`, or behind a shell script, has said that it goes on.

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use clap::{Args, ValueEnum};
 
-use super::downsampled_to_fit;
+use super::{downsampled_to_fit, open_with_word};
 use crate::cli::CliError;
-use crate::data::load::{Choice, Endian, LoadControl, LoadOptions, Portion, RawFormat, Region, Thinning};
-use crate::data::{Volume, VoxelType, open};
+use crate::data::load::{Choice, Endian, LoadOptions, Portion, RawFormat, Region, Thinning};
+use crate::data::{Volume, VoxelType};
 use crate::gpu::Context;
 
 /// How a volume is read.
@@ -125,7 +125,7 @@ impl LoadArgs {
             options.choice = options.choice.or(choice);
         }
         // What is wrong with a file is said first.
-        let whole = open(source, &options, &LoadControl::new())?;
+        let whole = open_with_word(source, &options)?;
         let context = Context::headless()?;
         Ok((downsampled_to_fit(source, whole, &context)?, context))
     }

@@ -6,6 +6,7 @@ mod load_args;
 mod look;
 mod overlay;
 mod single_settings;
+mod unfolding;
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -18,10 +19,10 @@ pub(super) use self::load_args::{LoadArgs, parse_voxel_type};
 pub(super) use self::look::Look;
 use self::look::{Named, Proposed, proposal};
 use self::overlay::Overlay;
+pub(super) use self::unfolding::{open_for_a_glance, open_with_word};
 use super::CliError;
 use super::outputs::{keep_apart, warn_line};
-use crate::data::load::LoadControl;
-use crate::data::{Dataset, KindName, Surroundings, ValueRanges, Volume, open, read_surroundings};
+use crate::data::{Dataset, KindName, Surroundings, ValueRanges, Volume, read_surroundings};
 use crate::gpu::{Context, fitted, small_volume};
 use crate::model::auto::Wishes;
 use crate::model::{MAX_EDGE, SceneAxis, Settings, assign, auto};
@@ -143,7 +144,7 @@ impl SceneArgs {
 impl LookArgs {
     /// Reads a volume, whatever shows it.
     pub(super) fn read_volume(&self, source: &Path) -> Result<Volume, CliError> {
-        Ok(open(source, &self.load.load_options()?, &LoadControl::new())?)
+        Ok(open_with_word(source, &self.load.load_options()?)?)
     }
 
     /// What an adapter shows of a volume that was read.

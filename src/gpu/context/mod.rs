@@ -1,5 +1,6 @@
 //! The device, what it can do, and what it complains about.
 
+mod adapters;
 mod addresses;
 pub(super) mod clock;
 mod complaints;
@@ -84,26 +85,9 @@ impl Context {
     /// When there is no adapter or it cannot store the textures that we need.
     pub fn headless() -> Result<Self, GpuError> {
         check_room_for_drivers()?;
-        let no_adapter = |why: String| GpuError::NoAdapter { why, help: ADAPTER_HELP };
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
-            // Vulkan, Metal, DX12; `WGPU_BACKEND` narrows it.
-            backends: wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY),
-            ..wgpu::InstanceDescriptor::new_without_display_handle_from_env()
-        });
-        let wanted = std::env::var("WGPU_ADAPTER_NAME").unwrap_or_default().to_lowercase();
-        let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
-        adapters.retain(|adapter| adapter.get_info().name.to_lowercase().contains(&wanted));
-        adapters.sort_by_key(|adapter| match adapter.get_info().device_type {
-            wgpu::DeviceType::DiscreteGpu => 0,
-            wgpu::DeviceType::IntegratedGpu => 1,
-            wgpu::DeviceType::VirtualGpu => 2,
-            wgpu::DeviceType::Cpu => 3,
-            wgpu::DeviceType::Other => 4,
-        });
-        let adapter =
-            adapters.into_iter().next().ok_or_else(|| no_adapter("no driver offers one".to_owned()))?;
+        let adapter = adapters::fastest()?;
         let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(&adapter)))
-            .map_err(|err| no_adapter(err.to_string()))?;
+            .map_err(|err| GpuError::NoAdapter { why: err.to_string(), help: ADAPTER_HELP })?;
         Self::new(&adapter, device, queue)
     }
 

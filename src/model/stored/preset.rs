@@ -295,6 +295,9 @@ mod tests {
             let refused = apply_path(&settings, path, &camera).unwrap_err();
             assert!(matches!(refused, PresetError::UnknownPath { .. }), "{path}: {refused}");
         }
+        let said = |path: &str| set(path, "1").unwrap_err().to_string();
+        assert!(said("schema").contains("; at the top there are: "), "{}", said("schema"));
+        assert!(said("shadows.x").contains("; at `shadows` there are: "), "{}", said("shadows.x"));
         for (path, text) in [("range.robuster", "1"), ("range.typed", "3"), ("lights.0.name.x", "1")] {
             assert!(set(path, text).is_err(), "{path}");
         }

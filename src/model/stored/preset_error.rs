@@ -22,13 +22,18 @@ pub enum PresetError {
         bytes: usize,
     },
     /// `--set` names something that does not exist.
-    #[error("there is no setting `{path}`; at `{at}` there are: {known}")]
+    #[error("there is no setting `{path}`; at {} there are: {known}", place(at))]
     UnknownPath {
         /// The whole path.
         path: String,
-        /// The part that exists.
+        /// The part that exists; empty for the top.
         at: String,
         /// What exists there.
         known: String,
     },
+}
+
+/// Place of a setting in words.
+fn place(path: &str) -> String {
+    if path.is_empty() { "the top".to_owned() } else { format!("`{path}`") }
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use eframe::egui;
 
 use super::{DEFAULT_SOURCE, PendingLook};
+use crate::app::shell::file_tasks::Reason;
 use crate::app::shell::session::Session;
 use crate::app::windows::files::{self, Purpose};
 use crate::app::windows::foreign_path::Answer;
@@ -16,10 +17,37 @@ impl App {
     /// Takes over the look of a session, a preset or a picture. If it is of another volume than the open one,
     /// that is opened first; a preset is of any volume.
     pub(crate) fn open_record(&mut self, path: &Path, ctx: &egui::Context) {
-        let record = match files::load_record(path) {
-            Ok(record) => record,
-            Err(err) => return self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
+        let of = path.to_owned();
+        self.read_file(Reason::Open, path, ctx, files::load_record, move |app, read, ctx| match read {
+            Ok(record) => app.open_look(record, &of, ctx),
+            Err(why) => app.say_not_read(text::opening::SETTINGS_NOT_LOADED, why),
+        });
+    }
+
+    /// Opens a file that is a volume or carries a look, whichever it is.
+    pub(super) fn open_either(&mut self, path: &Path, ctx: &egui::Context) {
+        let of = path.to_owned();
+        let read = |path: &Path| {
+            if files::is_volume(path) { Ok(None) } else { files::load_record(path).map(Some) }
         };
+        self.read_file(Reason::Open, path, ctx, read, move |app, read, ctx| match read {
+            Ok(Some(record)) => app.open_look(record, &of, ctx),
+            Ok(None) => app.open_volume(&of, ctx),
+            Err(why) => app.say_not_read(text::opening::SETTINGS_NOT_LOADED, why),
+        });
+    }
+
+    /// Opens a volume with the look of a file.
+    pub(super) fn open_look_with(&mut self, look: &Path, volume: &Path, ctx: &egui::Context) {
+        let volume = volume.to_owned();
+        self.read_file(Reason::Open, look, ctx, files::load_record, move |app, read, ctx| match read {
+            Ok(record) => app.open_with(&volume, record, ctx),
+            Err(why) => app.say_not_read(text::opening::SETTINGS_NOT_LOADED, why),
+        });
+    }
+
+    /// Takes over a look that was read from a file.
+    fn open_look(&mut self, record: Record, path: &Path, ctx: &egui::Context) {
         let open = self.volume_record().map(|(_, content_id)| content_id);
         match record.volume.clone() {
             Some(volume) if open.is_none_or(|open| !volume.is_of(open)) => match self.place_of(&volume, path)
@@ -92,17 +120,28 @@ impl App {
     }
 
     /// Takes over a look for the open volume, whatever volume it was made for.
-    pub(crate) fn load_settings(&mut self, path: &Path) {
-        match files::load_record(path) {
+    pub(crate) fn load_settings(&mut self, path: &Path, ctx: &egui::Context) {
+        self.read_file(Reason::Look, path, ctx, files::load_record, |app, read, _ctx| match read {
             Ok(record) => {
-                let open = self.volume_record().map(|(_, content_id)| content_id);
+                let open = app.volume_record().map(|(_, content_id)| content_id);
                 if record.volume.as_ref().zip(open).is_some_and(|(of, open)| !of.is_of(open)) {
-                    self.messages.note(text::opening::OF_ANOTHER_VOLUME);
+                    app.messages.note(text::opening::OF_ANOTHER_VOLUME);
                 }
-                self.apply_record(&record, &self.value_ranges(), self.opened_id());
+                app.apply_record(&record, &app.value_ranges(), app.opened_id());
             }
-            Err(err) => self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
-        }
+            Err(why) => app.say_not_read(text::opening::SETTINGS_NOT_LOADED, why),
+        });
+    }
+
+    /// Compares the look of the window with that of a file.
+    pub(crate) fn compare_with_file(&mut self, path: &Path, ctx: &egui::Context) {
+        self.read_file(Reason::Comparison, path, ctx, files::load_record, |app, read, _ctx| match read {
+            Ok(record) => match app.with_record(&record, &app.value_ranges()) {
+                Ok(look) => app.compare.with(look),
+                Err(err) => app.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
+            },
+            Err(why) => app.say_not_read(text::opening::SETTINGS_NOT_LOADED, why),
+        });
     }
 
     /// The values of the open volume.

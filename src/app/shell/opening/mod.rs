@@ -10,6 +10,7 @@ use std::sync::Arc;
 use eframe::egui;
 
 use crate::app::common::volume_facts::VolumeFacts;
+use crate::app::shell::file_tasks::{NotRead, Reason};
 use crate::app::shell::first_lights::FirstLights;
 use crate::app::shell::history::{History, Step};
 use crate::app::shell::keep_balanced::KeepBalanced;
@@ -50,9 +51,16 @@ impl App {
         let source = source.as_ref();
         // It was said of another file.
         self.messages.dismiss();
-        if files::is_record(source) && !files::is_volume(source) {
-            self.open_record(source, ctx);
-        } else if self.start_loading(source, Reading::default(), ctx) {
+        if files::is_record(source) {
+            self.open_either(source, ctx);
+        } else {
+            self.open_volume(source, ctx);
+        }
+    }
+
+    /// Opens a volume with its own first look.
+    pub(super) fn open_volume(&mut self, source: &Path, ctx: &egui::Context) {
+        if self.start_loading(source, Reading::default(), ctx) {
             self.pending = None;
         }
     }
@@ -82,14 +90,18 @@ impl App {
     /// Opens what was named at the start. A look that cannot be used leaves the default volume.
     pub(crate) fn open_first(&mut self, source: Option<&Path>, volume: Option<&Path>, ctx: &egui::Context) {
         match (source, volume) {
-            (Some(look), Some(volume)) => match files::load_record(look) {
-                Ok(record) => self.open_with(volume, record, ctx),
-                Err(err) => self.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
-            },
+            (Some(look), Some(volume)) => self.open_look_with(look, volume, ctx),
             (Some(source), None) | (None, Some(source)) => self.open(source, ctx),
             (None, None) => self.open_volume_of_session(ctx),
         }
-        if self.loader.progress().is_none() {
+        self.open_something(Reason::Open, ctx);
+    }
+
+    /// Opens the default volume where nothing is open, and what was read for that reason has led to nothing.
+    pub(in crate::app) fn open_something(&mut self, reason: Reason, ctx: &egui::Context) {
+        let is_empty = self.volume.is_none() && self.viewport.dataset().is_none();
+        let is_busy = self.loader.progress().is_some() || self.file_tasks.is_reading(Reason::Open);
+        if reason == Reason::Open && is_empty && !is_busy {
             self.start_loading(Path::new(DEFAULT_SOURCE), Reading::default(), ctx);
         }
     }
@@ -106,15 +118,18 @@ impl App {
     fn open_volume_of_session(&mut self, ctx: &egui::Context) {
         let session = self.session.as_ref().map(|session| session.path().to_owned());
         let Some(session) = session.filter(|path| path.exists()) else { return };
-        // That the session cannot be read is said when it is due.
-        let Ok(record) = files::load_record(&session) else { return };
-        let Some(volume) = record.volume.clone() else { return };
-        match self.place_of(&volume, &session) {
-            VolumePlace::Builtin(name) => self.open_chosen(Path::new(&name), &volume.choice, ctx),
-            VolumePlace::Beside(path) => self.open_chosen(&path, &volume.choice, ctx),
-            VolumePlace::Elsewhere(path) => self.foreign_path.ask(path, record),
-            VolumePlace::Never(why) => self.foreign_path.refuse(&volume.source, why, record),
-        }
+        let path = session.clone();
+        self.read_file(Reason::Open, &path, ctx, files::load_record, move |app, read, ctx| {
+            // That the session cannot be read is said when it is due.
+            let Ok(record) = read else { return };
+            let Some(volume) = record.volume.clone() else { return };
+            match app.place_of(&volume, &session) {
+                VolumePlace::Builtin(name) => app.open_chosen(Path::new(&name), &volume.choice, ctx),
+                VolumePlace::Beside(path) => app.open_chosen(&path, &volume.choice, ctx),
+                VolumePlace::Elsewhere(path) => app.foreign_path.ask(path, record),
+                VolumePlace::Never(why) => app.foreign_path.refuse(&volume.source, why, record),
+            }
+        });
     }
 
     /// Opens a file of bare voxels of which the user has said how it is stored.
@@ -159,7 +174,9 @@ impl App {
     }
 
     pub(crate) fn start_loading(&mut self, source: &Path, reading: Reading, ctx: &egui::Context) -> bool {
-        // What was asked or said of the file before is over.
+        // What was asked or said of the file before is over, and so is what was to be opened.
+        self.file_tasks.forget(Reason::Open);
+        self.file_tasks.forget(Reason::Session);
         self.raw_dialog.close();
         self.roomy.close();
         let known = Known { up: self.memory.up_of(source), corrected: self.memory.corrections_of(source) };
@@ -208,8 +225,26 @@ impl App {
         }
     }
 
-    /// A volume is ready: it replaces the one before.
-    pub(crate) fn take_in(&mut self, opened: Opened, ctx: &egui::Context) {
+    /// A volume is ready: it replaces the one before, once the session has been read that is due with the first.
+    pub(crate) fn take_in_with_session(&mut self, opened: Opened, ctx: &egui::Context) {
+        let session = self.session.as_ref().filter(|_| self.session_is_due);
+        match session.map(|session| session.path().to_owned()).filter(|path| path.exists()) {
+            Some(path) => {
+                self.read_file(Reason::Session, &path, ctx, files::load_record, |app, read, ctx| {
+                    app.take_in(opened, Some(read), ctx);
+                });
+            }
+            None => self.take_in(opened, None, ctx),
+        }
+    }
+
+    /// A volume is ready, and so is the session that was to be read with it.
+    fn take_in(
+        &mut self,
+        opened: Opened,
+        session_read: Option<Result<Record, NotRead>>,
+        ctx: &egui::Context,
+    ) {
         let Opened { source, reading, dataset, too_many, renderer, settings, stamp } = opened;
         let volume = Arc::clone(dataset.volume());
         self.messages.clear();
@@ -251,20 +286,18 @@ impl App {
         }
         // What is measured is of the volume before; a first look is balanced, a look from there is not.
         self.keep_balanced = KeepBalanced::new(&self.settings, !is_kept);
-        let has_session =
-            self.session_is_due && self.session.as_ref().is_some_and(|session| session.path().exists());
-        let is_named = is_kept || has_session || self.pending.is_some() || self.adjust.is_some();
+        let is_named = is_kept || session_read.is_some() || self.pending.is_some() || self.adjust.is_some();
         let (ranges, opened_id) = (volume.ranges(), Some(volume.opened_id()));
         // Session and command line speak of the first volume.
-        if std::mem::take(&mut self.session_is_due)
-            && let Some(mut session) = self.session.take_if(|session| session.path().exists())
+        self.session_is_due = false;
+        if let Some(read) = session_read
+            && let Some(mut session) = self.session.take()
         {
-            let found = files::load_record(session.path());
-            session.found(found.as_ref());
-            match found {
+            session.found(read.as_ref().ok());
+            match read {
                 Ok(record) if !self.apply_record(&record, &ranges, opened_id) => session.not_understood(),
                 Ok(_) => {}
-                Err(err) => self.messages.error(text::opening::SESSION_NOT_LOADED, err),
+                Err(why) => self.say_not_read(text::opening::SESSION_NOT_LOADED, why),
             }
             self.session = Some(session);
         }

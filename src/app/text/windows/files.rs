@@ -81,6 +81,14 @@ pub(crate) const PICTURES: &str = "Pictures";
 pub(crate) const LIGHT_VOLUME: &str = "Light volume";
 pub(crate) const SLICE: &str = "Slice";
 
+/// A file that was being read is given up.
+pub(crate) const READING_CANCELLED: &str = "Reading was cancelled";
+
+/// The system is out of threads.
+pub(crate) fn no_thread(err: impl Display) -> String {
+    format!("no thread to read the file: {err}")
+}
+
 /// The window for typing a path.
 pub(crate) const PATH: &str = "Path";
 

@@ -227,19 +227,14 @@ pub(crate) fn load_record(path: &Path) -> Result<Record, String> {
 
 /// The values over which transfer functions of other programs are laid, on the way in and on the way out: those that the
 /// plot shows.
-fn exchanged_range(settings: &Settings, ranges: &ValueRanges) -> ValueRange {
+pub(crate) fn exchanged_range(settings: &Settings, ranges: &ValueRanges) -> ValueRange {
     settings.shown_range(ranges)
 }
 
-/// Reads a transfer function of another program for a look, of a volume with these values.
-pub(crate) fn import_transfer(
-    path: &Path,
-    settings: &Settings,
-    ranges: &ValueRanges,
-) -> Result<TransferFunction, String> {
+/// Reads a transfer function of another program, laid over these values where it names none.
+pub(crate) fn import_transfer(path: &Path, range: ValueRange) -> Result<TransferFunction, String> {
     let bytes = read_small(path).map_err(|err| text::files::transfer_not_read(path, err))?;
-    import(path, &bytes, exchanged_range(settings, ranges))
-        .map_err(|err| text::files::transfer_not_used(path, err))
+    import(path, &bytes, range).map_err(|err| text::files::transfer_not_used(path, err))
 }
 
 /// Writes the transfer function of a look for another program, for a volume with these values.
@@ -269,7 +264,7 @@ mod tests {
         std::fs::write(&path, [0xff, 0xfe]).unwrap();
         assert!(load_record(&path).unwrap_err().contains("no text"));
         assert!(load_record(folder.path()).unwrap_err().contains("regular"));
-        assert!(import_transfer(&folder.path().join("none.json"), &settings, &ValueRanges::UNIT).is_err());
+        assert!(import_transfer(&folder.path().join("none.json"), ValueRange::UNIT).is_err());
     }
 
     #[test]
@@ -286,7 +281,7 @@ mod tests {
         for ending in ["itf", "vp", "json"] {
             let path = folder.path().join(format!("a.{ending}"));
             export_transfer(&path, &settings, &ranges).unwrap();
-            let back = import_transfer(&path, &settings, &ranges).unwrap();
+            let back = import_transfer(&path, exchanged_range(&settings, &ranges)).unwrap();
             for value in [-20.0, 0.0, 60.0, 100.0, 140.0] {
                 let (found, meant) = (back.opacity_at(value), settings.transfer.opacity_at(value));
                 assert!((found - meant).abs() < 1e-3, "{ending} at {value}: {found} and not {meant}");

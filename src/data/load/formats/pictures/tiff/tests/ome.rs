@@ -285,3 +285,10 @@ fn a_recording_of_many_planes_is_read() {
         assert_eq!(firsts(&load_chosen(&bytes, choice).unwrap()), [value], "{frame}");
     }
 }
+
+#[test]
+fn images_that_nobody_could_choose_from_are_refused() {
+    let sizes = "DimensionOrder=\"XYZCT\" SizeZ=\"1\" SizeC=\"1\" SizeT=\"1\"";
+    let bytes = file(&document(&image("a", sizes, "").repeat(20_000)), 1);
+    assert_refused(load_bytes(&bytes), LoadErrorKind::Limit, &["20000 images", "split"]);
+}

@@ -25,6 +25,9 @@ use pages::Pages;
 /// Bytes of XML that are read at most: of ten thousand files it has a few million.
 pub(in super::super) const MOST_XML_BYTES: u64 = xml::MOST_BYTES as u64;
 
+/// Images that are offered at most: a plate of 1536 wells with ten fields each has as many.
+const MOST_IMAGES: usize = 1 << 14;
+
 /// Whether a description is OME's XML.
 pub(in super::super) fn is_ome(description: &str) -> bool {
     // After a byte order mark, a declaration and a comment, which writers put there.
@@ -194,7 +197,25 @@ fn of_root(
     let Some(first) = tiff.pages.first() else {
         return Err(attempt.bad_input("pages", "there is none", HELP));
     };
-    let [image, pixels] = image_of(attempt, root, choice)?;
+    let images: Vec<(Node<'_, '_>, Node<'_, '_>)> =
+        children(root, "Image").filter_map(|image| Some((image, child(image, "Pixels")?))).collect();
+    if images.len() > MOST_IMAGES {
+        let why = format!("there are {} images, and {MOST_IMAGES} are read at most", images.len());
+        return Err(attempt.limit("Image", why, "split the file into several"));
+    }
+    let named = |image: Node<'_, '_>| image.attribute("Name").unwrap_or_default().to_owned();
+    let offers: Vec<Offer> = images
+        .iter()
+        .enumerate()
+        .map(|(at, &(image, pixels))| {
+            let size = |name| number(pixels, name).unwrap_or(0);
+            Offer::numbered(at, &named(image), [size("SizeX"), size("SizeY"), size("SizeZ")])
+        })
+        .collect();
+    if offers.is_empty() {
+        return Err(attempt.bad_input("description", "its OME-XML has no image", HELP));
+    }
+    let (image, pixels) = images[attempt.chosen(choice, Dimension::Series, offers)?];
     let sizes = Sizes::of(attempt, pixels, first.samples)?;
     let inside = if first.meaning == Meaning::Channels { first.samples } else { 1 };
     let channels = sizes.channels.saturating_mul(inside);
