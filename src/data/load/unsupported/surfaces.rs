@@ -1,5 +1,7 @@
 //! Surfaces, which are no volumes.
 
+use std::path::Path;
+
 use super::UnsupportedFormat;
 use super::mark::{Look, Mark};
 
@@ -11,7 +13,8 @@ const HELP: &str = "open the volume that it was made from, or fill it with voxel
 /// A binary STL file has a header of 80 bytes, the number of triangles, and 50 bytes for each.
 fn is_binary_stl(look: &Look) -> bool {
     let count = look.stored.get(80..84).and_then(|bytes| bytes.try_into().ok()).map(u32::from_le_bytes);
-    look.name.ends_with(".stl") && count.is_some_and(|count| 84 + 50 * u64::from(count) == look.length)
+    let is_called_so = Path::new(&look.name).extension().is_some_and(|ending| ending == "stl");
+    is_called_so && count.is_some_and(|count| 84 + 50 * u64::from(count) == look.length)
 }
 
 /// Lines of Wavefront's text: vertices before anything else but comments, names and materials.

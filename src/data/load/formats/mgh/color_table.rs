@@ -1,6 +1,6 @@
-//! Names and colours of labels behind the voxels of an MGH file, where FreeSurfer has put them.
+//! Names and colours of labels behind the voxels of an MGH file, where `FreeSurfer` has put them.
 //!
-//! After `fio.cpp`, `tags.cpp` and `colortab.cpp` of FreeSurfer (`TAGreadStart`, `znzCTABreadFromBinary`): five real numbers
+//! After `fio.cpp`, `tags.cpp` and `colortab.cpp` of `FreeSurfer` (`TAGreadStart`, `znzCTABreadFromBinary`): five real numbers
 //! about the acquisition, then tags. All numbers are big-endian.
 
 use crate::data::Labels;

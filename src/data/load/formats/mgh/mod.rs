@@ -1,7 +1,7 @@
-//! MGH and MGZ, the volumes of FreeSurfer: a header of 284 bytes, the voxels, and what tags say behind them; as a whole
+//! MGH and MGZ, the volumes of `FreeSurfer`: a header of 284 bytes, the voxels, and what tags say behind them; as a whole
 //! often compressed with gzip.
 //!
-//! After <https://surfer.nmr.mgh.harvard.edu/fswiki/FsTutorial/MghFormat> and `mghRead` of FreeSurfer's `mriio.cpp`. World
+//! After <https://surfer.nmr.mgh.harvard.edu/fswiki/FsTutorial/MghFormat> and `mghRead` of `FreeSurfer`'s `mriio.cpp`. World
 //! space is right-anterior-superior millimetres. Where the volumes of one file differ is not said: they are time steps.
 
 mod color_table;

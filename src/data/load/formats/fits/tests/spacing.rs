@@ -5,10 +5,22 @@ use glam::DVec3;
 use super::loaded;
 use super::writer::Unit;
 
-/// A cube with a type, a unit and a step for each axis.
-fn cube(axes: [(&str, &str, f64); 3]) -> Unit {
+/// What is said of an axis.
+#[derive(Clone, Copy)]
+struct Axis<'a> {
+    kind: &'a str,
+    unit: &'a str,
+    step: f64,
+}
+
+fn axis<'a>(kind: &'a str, unit: &'a str, step: f64) -> Axis<'a> {
+    Axis { kind, unit, step }
+}
+
+/// A cube with these axes.
+fn cube(axes: [Axis<'_>; 3]) -> Unit {
     let mut unit = Unit::primary(8, &[2, 2, 2], (0..8).collect());
-    for (at, (kind, name, step)) in (1..).zip(axes) {
+    for (at, Axis { kind, unit: name, step }) in (1..).zip(axes) {
         unit = unit.with(&format!("CTYPE{at}"), format!("'{kind}'")).with(&format!("CDELT{at}"), step);
         if !name.is_empty() {
             unit = unit.with(&format!("CUNIT{at}"), format!("'{name}'"));
@@ -24,13 +36,14 @@ fn near(found: DVec3, expected: DVec3) -> bool {
 
 #[test]
 fn degrees_compare_and_are_no_lengths() {
-    let sky = [("RA---SIN", "", -0.002), ("DEC--SIN", "deg", 0.004), ("FREQ", "Hz", 1e6)];
+    let sky = [axis("RA---SIN", "", -0.002), axis("DEC--SIN", "deg", 0.004), axis("FREQ", "Hz", 1e6)];
     let volume = loaded(&cube(sky));
     assert!(near(volume.spacing_mm(), DVec3::new(1.0, 2.0, 1.0)), "{}", volume.spacing_mm());
     assert!(volume.has_unknown_scale());
     let said = volume.remarks().join("; ");
     assert!(said.contains("axis 3 (FREQ, in hz)") && said.contains("degrees"), "{said}");
-    let arcseconds = [("GLON-CAR", "arcsec", 7.2), ("GLAT-CAR", "deg", 0.001), ("", "deg", 0.004)];
+    let arcseconds =
+        [axis("GLON-CAR", "arcsec", 7.2), axis("GLAT-CAR", "deg", 0.001), axis("", "deg", 0.004)];
     let volume = loaded(&cube(arcseconds));
     assert!(near(volume.spacing_mm(), DVec3::new(2.0, 1.0, 4.0)), "{}", volume.spacing_mm());
     assert!(volume.remarks().is_empty());
@@ -38,11 +51,11 @@ fn degrees_compare_and_are_no_lengths() {
 
 #[test]
 fn a_spectrum_may_be_the_first_axis_and_wavelengths_are_no_lengths() {
-    let first = [("VELO-LSR", "m/s", 500.0), ("RA---SIN", "deg", -0.1), ("DEC--SIN", "deg", 0.3)];
+    let first = [axis("VELO-LSR", "m/s", 500.0), axis("RA---SIN", "deg", -0.1), axis("DEC--SIN", "deg", 0.3)];
     let volume = loaded(&cube(first));
     assert!(near(volume.spacing_mm(), DVec3::new(1.0, 1.0, 3.0)), "{}", volume.spacing_mm());
     assert!(volume.remarks()[0].contains("axis 1 (VELO-LSR"), "{:?}", volume.remarks());
-    let waves = [("", "mm", 0.5), ("", "mm", 0.25), ("WAVE", "m", 1e-9)];
+    let waves = [axis("", "mm", 0.5), axis("", "mm", 0.25), axis("WAVE", "m", 1e-9)];
     let volume = loaded(&cube(waves));
     assert!(near(volume.spacing_mm(), DVec3::new(0.5, 0.25, 0.25)), "{}", volume.spacing_mm());
     assert!(!volume.has_unknown_scale() && volume.remarks().len() == 1);
@@ -51,12 +64,12 @@ fn a_spectrum_may_be_the_first_axis_and_wavelengths_are_no_lengths() {
 #[test]
 fn lengths_are_millimetres() {
     for (name, mm) in [("m", 1e3), ("cm", 10.0), ("mm", 1.0), ("um", 1e-3), ("nm", 1e-6)] {
-        let volume = loaded(&cube([("", name, 2.0), ("", name, 2.0), ("", name, 6.0)]));
+        let volume = loaded(&cube([axis("", name, 2.0), axis("", name, 2.0), axis("", name, 6.0)]));
         assert!(near(volume.spacing_mm() / mm, DVec3::new(2.0, 2.0, 6.0)), "{name}");
         assert!(!volume.has_unknown_scale());
     }
     // Between galaxies they are longer than a scene can be.
-    let far = loaded(&cube([("", "kpc", 2.0), ("", "kpc", 2.0), ("", "kpc", 6.0)]));
+    let far = loaded(&cube([axis("", "kpc", 2.0), axis("", "kpc", 2.0), axis("", "kpc", 6.0)]));
     assert!(near(far.spacing_mm(), DVec3::new(1.0, 1.0, 3.0)) && far.has_unknown_scale());
 }
 
@@ -90,9 +103,9 @@ fn matrices_say_how_long_steps_are() {
 #[test]
 fn steps_that_cannot_be_are_mended() {
     for (step, expected) in [(0.0, 1.0), (-3.0, 3.0)] {
-        let volume = loaded(&cube([("", "", 1.0), ("", "", 1.0), ("", "", step)]));
+        let volume = loaded(&cube([axis("", "", 1.0), axis("", "", 1.0), axis("", "", step)]));
         assert!(near(volume.spacing_mm(), DVec3::new(1.0, 1.0, expected)), "{}", volume.spacing_mm());
     }
-    let unlike = loaded(&cube([("", "deg", 1.0), ("", "deg", 1e-12), ("", "deg", 1.0)]));
+    let unlike = loaded(&cube([axis("", "deg", 1.0), axis("", "deg", 1e-12), axis("", "deg", 1.0)]));
     assert!(near(unlike.spacing_mm(), DVec3::ONE) && !unlike.remarks().is_empty());
 }
