@@ -6,10 +6,10 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 
 use super::CliError;
-use super::outputs::print_line;
+use super::outputs::{print_line, warn_of_nothing};
 use super::scene::{SceneArgs, parse_size};
 use crate::export::{check_ending, check_writable, export_png};
-use crate::gpu::{Distance, Picture, RenderOptions, Renderer};
+use crate::gpu::{Distance, Picture, RenderOptions, Renderer, is_empty_light};
 use crate::model::Variant;
 
 /// Pixels between two pictures.
@@ -55,6 +55,9 @@ pub(super) fn run(args: &CompareArgs) -> Result<(), CliError> {
         let Distance { rmse, largest } = Distance::between(&first.shown, &picture.shown);
         print_line(&format!("{name:<12} RMSE {rmse:6.2} of 255, largest {largest}"))?;
         pictures.push(picture);
+    }
+    if pictures.iter().all(|picture| is_empty_light(&picture.light)) {
+        warn_of_nothing();
     }
     let row = row_of(&pictures);
     export_png(row.size, &row.shown, true, None, &args.output)?;

@@ -132,7 +132,8 @@ pub(super) fn warn_lines(text: &str) {
 /// Says that pictures show nothing of a volume, and what helps.
 pub(super) fn warn_of_nothing() {
     warn_line(
-        "warning: nothing of the volume is visible; --set range=full, another --preset, or none, may help",
+        "warning: nothing of the volume is visible; --set range=full, another --preset or none, another --look, a larger \
+         --size or another view (--set camera...) may help",
     );
 }
 

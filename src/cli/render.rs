@@ -106,7 +106,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         Ok(rows)
     };
     write_picture(output.path(), &shot, Some(&record), &mut rows)?;
-    if renderer.shows_nothing() {
+    if bands.is_empty() {
         warn_of_nothing();
     }
     // A report without its picture would mislead.

@@ -71,15 +71,17 @@ pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
     let shot = ImageSpec { transparent, ..ImageSpec::new(size) };
     let how = PictureRecord::new(shot, context.description());
     let options = RenderOptions::of_shot(&shot);
+    let mut is_empty = true;
     for frame in 0..args.frames {
         let settings = settings.turned(light, f64::from(frame) / f64::from(args.frames));
         let shown = renderer.render_shown(&loaded, &settings, size, &options)?;
+        is_empty = is_empty && renderer.is_picture_empty()?;
         file.add(&shown, &Record::text(&settings, Some(&volume), Some(&how)))?;
         if args.progress {
             warn_line(&format!("{} of {}", frame + 1, args.frames));
         }
     }
-    if renderer.shows_nothing() {
+    if is_empty {
         warn_of_nothing();
     }
     file.finish()?;

@@ -18,6 +18,7 @@ mod scatter;
 mod sky;
 mod volume;
 
+pub use self::readback::pictures::is_empty_light;
 pub use self::readback::statistics::LightFigures;
 pub use self::readback::tiled::Bands;
 pub use crate::plan::RenderOptions;

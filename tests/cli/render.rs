@@ -265,3 +265,36 @@ fn whoever_names_what_is_up_stands_the_object_up() {
     }
     assert!(folder.fail(&format!("{render} --set camera.up=sideways"), 2).contains("camera.up"));
 }
+
+/// Whether a picture without its background shows anything, and whether the program says that it does not.
+fn shown_and_warned(folder: &Folder, args: &str) -> (bool, bool) {
+    let done = folder.run(&format!("render {args} --set floor.on=false -o out.png --transparent"));
+    assert_eq!(done.code, Some(0), "{done:?}");
+    let shows = pixels(&folder.path("out.png")).2.iter().any(|pixel| pixel[3] > 4);
+    (shows, done.stderr.contains("nothing of the volume is visible"))
+}
+
+/// 20 single voxels of 64³ are smaller than what a first look is made for.
+#[test]
+fn a_picture_that_shows_nothing_is_not_written_without_a_word() {
+    let folder = Folder::new();
+    let specks = |n: usize| {
+        let mut voxels = vec![0; n * n * n];
+        (0..20).for_each(|speck| voxels[(speck * 7919 + 12_345) * 31 % (n * n * n)] = 1);
+        let header = format!("NRRD0004\ntype: uint8\ndimension: 3\nencoding: raw\nsizes: {n} {n} {n}\n\n");
+        [header.into_bytes(), voxels].concat()
+    };
+    folder.write("specks.nrrd", specks(64));
+    folder.write("fewer.nrrd", specks(128));
+    for size in ["320x240", "64x48"] {
+        for file in ["specks.nrrd", "fewer.nrrd"] {
+            let (shows, warned) = shown_and_warned(&folder, &format!("{file} --size {size}"));
+            assert!(shows != warned, "{file} at {size}: shows {shows}, warned {warned}");
+        }
+    }
+    // Nothing is in the picture that the camera does not look at, and nothing is transparent.
+    let away = "builtin:sphere:16 --size 64x48 --set camera.target=[90,0,0]";
+    assert_eq!(shown_and_warned(&folder, away), (false, true));
+    let sphere = "builtin:sphere:16 --size 64x48";
+    assert_eq!(shown_and_warned(&folder, sphere), (true, false));
+}

@@ -77,7 +77,7 @@ macro_rules! kept {
 }
 
 /// Files of other programs, which take a program to write, each one that is valid.
-const KEPT: [(&str, &[u8]); 39] = kept![
+const KEPT: [(&str, &[u8]); 43] = kept![
     "packed.nrrd",
     "digits.nrrd",
     "appended.vti",
@@ -117,6 +117,10 @@ const KEPT: [(&str, &[u8]); 39] = kept![
     "described.ini",
     "described.ivf",
     "list.mhd",
+    "brain.mgh",
+    "labels.mgz",
+    "cube.fits",
+    "units.fits.gz",
 ];
 
 /// The files of other programs, by their names.

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 import readers
-from cases import dicom, grids, medical, microscopy, phantom
+from cases import astronomy, dicom, freesurfer, grids, medical, microscopy, phantom
 from table import row, save
 
 HERE = Path(__file__).parent
@@ -26,7 +26,7 @@ def main():
     WRITTEN.mkdir()
     cases = [
         case
-        for module in (medical, dicom, microscopy, grids)
+        for module in (medical, dicom, microscopy, grids, freesurfer, astronomy)
         for case in module.cases(WRITTEN)
     ]
     rows = []

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use super::exposure::{Exposures, Kind};
 use super::quality::QualityLevel;
 use super::request::{FrameRequest, Scene};
-use crate::gpu::{GpuError, RenderOptions, Report, dark_share, mean_luminance};
+use crate::gpu::{GpuError, RenderOptions, Report, dark_share, is_empty_light, mean_luminance};
 use crate::model::Settings;
 use crate::plan::{EyeKey, Request};
 
@@ -24,6 +24,8 @@ pub(super) struct Brightness {
     measured: Instant,
     /// Whose light was measured then, and how it was exposed.
     measured_eye: Option<(EyeKey, f64)>,
+    /// Nothing of the volume is seen in that light.
+    is_empty: bool,
     /// The last preview that was measured.
     last_preview: Option<FrameRequest>,
 }
@@ -35,6 +37,7 @@ impl Brightness {
             exposures: Exposures::default(),
             measured: Instant::now(),
             measured_eye: None,
+            is_empty: false,
             last_preview: None,
         }
     }
@@ -42,6 +45,11 @@ impl Brightness {
     /// Forgets everything, as with another volume.
     pub(super) fn forget(&mut self) {
         *self = Self { measured: self.measured, ..Self::new() };
+    }
+
+    /// Whether the last picture at full quality whose light was measured shows nothing of the volume.
+    pub(super) fn is_picture_empty(&self) -> bool {
+        self.is_empty
     }
 
     /// How long to expose a picture; `None` where that is not compensated.
@@ -73,6 +81,7 @@ impl Brightness {
         self.measured = Instant::now();
         self.measured_eye = Some(measured);
         let light = scene.renderer.read_light()?;
+        self.is_empty = is_empty_light(&light);
         if frame_request.looks.right.is_none() {
             let is_of_last_preview = self.last_preview.as_ref() == Some(frame_request);
             self.exposures.settle(mean_luminance(&light), is_of_last_preview);

@@ -299,7 +299,7 @@ impl RenderWorker {
             scene.dataset = dataset.clone();
         }
         let dataset = scene.dataset.clone();
-        let shows_nothing = scene.renderer.shows_nothing();
+        let shows_nothing = scene.renderer.shows_nothing() || self.brightness.is_picture_empty();
         let mut mailbox = self.shared.mailbox();
         mailbox.figures.dark_share = dark_share.or(mailbox.figures.dark_share);
         mailbox.figures.splats = splats.unwrap_or(mailbox.figures.splats);

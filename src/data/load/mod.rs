@@ -11,6 +11,7 @@ mod neighbour;
 mod reading;
 #[cfg(test)]
 mod tests;
+mod unsupported;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -29,7 +30,7 @@ use super::attempt::{Attempt, Room};
 pub use neighbour::neighbour;
 pub use reading::read_files::ReadFiles;
 
-use formats::{READERS, folder, reader_of};
+use formats::{FileFormat, READERS, folder, recognize};
 use reading::input::{Input, Witness};
 use reading::reader::{Source, Start};
 
@@ -108,21 +109,17 @@ fn load_watched(path: &Path, options: &LoadOptions, control: &LoadControl) -> Re
     let mut input = Input::open(attempt)?;
     let witness = Witness::of(attempt, &input)?;
     let start = Start::of(&mut input).map_err(|error| attempt.io(error))?;
-    // Voxels that somebody describes may begin like that by chance.
-    if start.is_packed_twice() && options.raw.dims.is_none() {
-        return Err(attempt.bad_input(
-            "format",
-            "it is compressed twice: what is in the gzip file is a gzip file again",
-            "unpack it once, with gunzip for example, and open what comes out",
-        ));
-    }
-    let Some(reader) = reader_of(path, &start, options) else {
-        let names: Vec<&str> = READERS.iter().map(|reader| reader.name).collect();
-        return Err(attempt.bad_input(
-            "format",
-            format!("its format is not one that is read: {}", names.join(", ")),
-            "convert it to NRRD, or describe its voxels with --dims and --type",
-        ));
+    let reader = match recognize(path, &start, &mut input, options) {
+        FileFormat::Reader(reader) => reader,
+        FileFormat::Unsupported(format) => return Err(format.refusal(attempt)),
+        FileFormat::Unknown => {
+            let names: Vec<&str> = READERS.iter().map(|reader| reader.name).collect();
+            return Err(attempt.bad_input(
+                "format",
+                format!("its format is not one that is read: {}", names.join(", ")),
+                "convert it to NRRD, or describe its voxels with --dims and --type",
+            ));
+        }
     };
     let loaded = (reader.load)(Source { path, input, start, options, control });
     witness.vouch(attempt, loaded)

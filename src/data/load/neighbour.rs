@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use super::LoadControl;
 use super::formats::folder::natural;
 use super::formats::{dicom, reader_of};
 use super::reading::input::Input;
 use super::reading::reader::Start;
-use super::{LoadControl, LoadOptions};
 use crate::data::attempt::Attempt;
 
 /// Most entries of a folder that are looked at: as many as a folder of slices may have.
@@ -70,7 +70,7 @@ fn entries(folder: &Path, are_folders: bool) -> Vec<PathBuf> {
 fn is_known(path: &Path) -> bool {
     let attempt = Attempt { what: "look at the file", path };
     let Ok(mut input) = Input::open(attempt) else { return false };
-    Start::of(&mut input).is_ok_and(|start| reader_of(path, &start, &LoadOptions::default()).is_some())
+    Start::of(&mut input).is_ok_and(|start| reader_of(path, &start).is_some())
 }
 
 /// Whether a file holds the voxels of a header that has its name.

@@ -7,7 +7,25 @@ use crate::gpu::{GpuError, Renderer};
 use crate::math::luminance;
 use crate::plan::{LightKey, Request};
 
+/// Opacity from which the volume is seen in a pixel: five of 255 steps before a background of the opposite brightness, the
+/// least that an eye finds in a picture.
+const SEEN_AT_ALL: f32 = 0.02;
+
+/// Whether no pixel of some light shows anything of the volume, however much of it is there: linear, premultiplied RGBA.
+pub fn is_empty_light(light: &[[f32; 4]]) -> bool {
+    light.iter().all(|texel| texel[3] < SEEN_AT_ALL)
+}
+
 impl Renderer {
+    /// Whether nothing of the volume is seen in what is shown now: all of it is transparent, too small for its pixels, or
+    /// outside of the picture.
+    ///
+    /// # Errors
+    /// As [`Self::read_shown`].
+    pub fn is_picture_empty(&self) -> Result<bool, GpuError> {
+        Ok(self.shows_nothing() || is_empty_light(&self.read_light()?))
+    }
+
     /// What is shown now.
     pub(crate) fn shown(&self) -> Result<&Target, GpuError> {
         let front = &self.targets.front;

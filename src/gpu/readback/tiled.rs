@@ -34,6 +34,8 @@ pub struct Bands<'a> {
     /// Those that are left, the next one last.
     left: Vec<Vec<PixelWindow>>,
     total: usize,
+    /// Nothing of the volume is seen in the parts that are done.
+    is_empty: bool,
 }
 
 impl Renderer {
@@ -66,7 +68,7 @@ impl Renderer {
         left.reverse();
         let total = left.len();
         let shot = ImageSpec { samples, ..*shot };
-        Bands { renderer: self, dataset, settings, shot, margin, left, total }
+        Bands { renderer: self, dataset, settings, shot, margin, left, total, is_empty: true }
     }
 }
 
@@ -74,6 +76,11 @@ impl Bands<'_> {
     /// How many bands are done, of how many.
     pub fn progress(&self) -> (usize, usize) {
         (self.total - self.left.len(), self.total)
+    }
+
+    /// Whether nothing of the volume is seen in the bands that are done.
+    pub fn is_empty(&self) -> bool {
+        self.is_empty
     }
 
     /// Draws the next band. `None` after the last.
@@ -95,6 +102,8 @@ impl Bands<'_> {
             let drawn = part.widened(self.margin);
             let options = RenderOptions { part: Some(drawn), ..RenderOptions::of_shot(&self.shot) };
             self.renderer.draw(self.dataset, self.settings, self.shot.size, &options)?;
+            // When something is seen, nobody asks any more.
+            self.is_empty = self.is_empty && self.renderer.is_picture_empty()?;
             let (context, shown) = (self.renderer.context(), &self.renderer.shown()?.shown.value.texture);
             if self.shot.depth == Depth::Eight {
                 lay(&mut bytes, &read_texture(context, shown)?, width, drawn, part);

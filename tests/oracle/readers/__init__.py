@@ -17,7 +17,7 @@ import SimpleITK
 import tifffile
 from PIL import Image
 
-from readers import dicoms, grids
+from readers import dicoms, grids, research
 from table import BODY, VOXELS, WORLD, Reading, columns, from_lps, held, length, luminance, rescaled, spaced, unknown
 
 
@@ -264,6 +264,8 @@ READERS = {
     (".vti", ".vtk"): grids.read_vtk,
     (".mrc", ".map", ".ccp4", ".mrc.gz", ".map.gz"): read_mrc,
     (".npy", ".npz"): read_numpy,
+    (".mgh", ".mgz"): research.read_mgh,
+    (".fits", ".fits.gz"): research.read_fits,
     (".cube",): grids.read_cube,
     (".pvm",): grids.read_pvm,
     (".raw", ".dat", ".ini", ".ivf"): grids.read_described,

@@ -8,7 +8,8 @@ pub(crate) const PICTURE: &str = "Picture";
 pub(crate) const DIVIDER: &str = "Divider";
 
 /// Over a picture in which nothing is seen.
-pub(crate) const NOTHING_SEEN: &str = "Nothing of the volume is visible: all of it is transparent";
+pub(crate) const NOTHING_SEEN: &str =
+    "Nothing of the volume is visible: it is transparent, too small, or outside of the picture";
 pub(crate) const SHOW_SOMETHING: Named = named(
     "Show something",
     "Takes a transfer function that shows the twentieth of the voxels with the highest values, the robust range, and \

@@ -5,6 +5,7 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use super::pictures::slices;
+use super::unsupported::of_folder;
 use super::{LoadControl, LoadError, LoadOptions, dicom};
 use crate::data::Volume;
 use crate::data::attempt::Attempt;
@@ -19,6 +20,9 @@ pub(in crate::data::load) fn load(
     control: &LoadControl,
 ) -> Result<Volume, LoadError> {
     let attempt = Attempt { what: "open the folder", path };
+    if let Some(format) = of_folder(path) {
+        return Err(format.refusal(attempt));
+    }
     let mut files = files(attempt, control)?;
     if let Some(among) = &options.among {
         let meant: HashSet<&OsStr> = among.iter().filter_map(|path| path.file_name()).collect();

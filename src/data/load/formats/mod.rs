@@ -2,8 +2,10 @@
 
 mod cube;
 pub(super) mod dicom;
+mod fits;
 pub(super) mod folder;
 mod metaimage;
+mod mgh;
 mod mrc;
 mod nifti;
 mod nrrd;
@@ -17,11 +19,13 @@ use std::path::Path;
 
 pub use raw::{RawFormat, RawGuess, RawLayout};
 
+use super::reading::input::Input;
 use super::reading::reader::{Reader, Start};
 use super::reading::{
     beside, content, input, label_files, number, placement, read_files, reader, rescaled, samples, sieve,
     text_numbers, voxels,
 };
+use super::unsupported::{self, UnsupportedFormat};
 use super::{Choice, Dimension, Endian, LoadControl, LoadError, LoadOptions, Offer};
 use pictures::{slices, tiff};
 
@@ -40,6 +44,9 @@ pub(super) const READERS: &[Reader] = &[
     vtk::XML,
     vtk::LEGACY,
     mrc::READER,
+    fits::READER,
+    // Without a mark: what has one comes first.
+    mgh::READER,
     cube::READER,
     raw::DAT,
     raw::IVF,
@@ -47,14 +54,52 @@ pub(super) const READERS: &[Reader] = &[
     raw::READER,
 ];
 
-/// The reader of a file.
-pub(super) fn reader_of(path: &Path, start: &Start, options: &LoadOptions) -> Option<&'static Reader> {
-    let by_content = READERS.iter().find(|reader| (reader.recognises)(start));
-    let by_ending =
-        || READERS.iter().find(|reader| reader.endings.iter().any(|ending| has_ending(path, ending)));
-    // Who says how voxels are stored means that they are nothing else.
-    let described = || options.raw.dims.map(|_| &raw::READER);
-    by_content.or_else(described).or_else(by_ending)
+/// The format of a file.
+pub(super) enum FileFormat {
+    /// One that is read.
+    Reader(&'static Reader),
+    /// One that is known and not read.
+    Unsupported(&'static UnsupportedFormat),
+    /// None that is known.
+    Unknown,
+}
+
+/// Recognises the format of a file that is open at its beginning, where it stays: by its first bytes, or else by its ending.
+pub(super) fn recognize(path: &Path, start: &Start, input: &mut Input, options: &LoadOptions) -> FileFormat {
+    // Who says how voxels are stored means that they are nothing else: the options, or a name.
+    let is_described = || options.raw.dims.is_some() || has_raw_ending(path) && raw::is_described(path);
+    if let Some(reader) = by_content(start) {
+        // Its bytes are those of the other, and say nothing.
+        return unsupported::disguised(path).map_or(FileFormat::Reader(reader), FileFormat::Unsupported);
+    }
+    if is_described() {
+        return FileFormat::Reader(&raw::READER);
+    }
+    if let Some(format) = unsupported::by_content(path, start, input) {
+        return FileFormat::Unsupported(format);
+    }
+    if let Some(reader) = by_ending(path) {
+        return FileFormat::Reader(reader);
+    }
+    unsupported::by_name(path).map_or(FileFormat::Unknown, FileFormat::Unsupported)
+}
+
+/// The reader of a file, as far as its first bytes and its ending tell.
+pub(super) fn reader_of(path: &Path, start: &Start) -> Option<&'static Reader> {
+    by_content(start).or_else(|| by_ending(path))
+}
+
+fn by_content(start: &Start) -> Option<&'static Reader> {
+    READERS.iter().find(|reader| (reader.recognises)(start))
+}
+
+fn by_ending(path: &Path) -> Option<&'static Reader> {
+    READERS.iter().find(|reader| reader.endings.iter().any(|ending| has_ending(path, ending)))
+}
+
+/// Whether a file is bare voxels by its ending.
+fn has_raw_ending(path: &Path) -> bool {
+    by_ending(path).is_some_and(|reader| reader.name == raw::READER.name)
 }
 
 /// Endings of all files that are read, for dialogs and messages.

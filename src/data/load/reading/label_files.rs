@@ -49,7 +49,7 @@ fn told_beside(attempt: Attempt<'_>, endings: &[&str]) -> Labels {
 }
 
 /// Whether no value has a fraction.
-fn is_whole(samples: &Samples) -> bool {
+pub(crate) fn is_whole(samples: &Samples) -> bool {
     match samples {
         Samples::F32(values) => values.iter().all(|value| value.fract() == 0.0),
         Samples::F64(values) => values.iter().all(|value| value.fract() == 0.0),

@@ -4,9 +4,9 @@ use super::Maker;
 use crate::samples::kept;
 
 /// An ending of each format, and none.
-const ENDINGS: [&str; 17] = [
+const ENDINGS: [&str; 19] = [
     "nrrd", "nhdr", "nii", "nii.gz", "hdr", "dcm", "mha", "mhd", "tif", "png", "vti", "vtk", "mrc", "npy",
-    "npz", "cube", "pvm",
+    "npz", "cube", "pvm", "mgz", "fits",
 ];
 
 pub(super) fn add(made: &mut Maker) {

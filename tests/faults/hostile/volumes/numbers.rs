@@ -21,6 +21,7 @@ pub(super) fn add(made: &mut Maker) {
     let of = |name: &str| kept.iter().find(|(kept, _)| *kept == name).expect("it is kept").1.clone();
     nifti(made, &of("plain.nii"));
     mrc(made, &of("density.mrc"));
+    mgh(made, &of("brain.mgh"));
     // BigTIFF: where the directory is, how many entries it has, and what the first say.
     let big = of("tiles.tif");
     for at in (4..16).chain(big.len() - 200..big.len()).step_by(4) {
@@ -76,6 +77,17 @@ fn mrc(made: &mut Maker, bytes: &[u8]) {
         for value in VALUES {
             let changed = with(bytes, 4 * (word - 1), &value.to_le_bytes());
             made.add(format!("word {word} is {value:x}"), "odd.mrc", &changed);
+        }
+    }
+}
+
+/// Counts, type, distances and places; big-endian.
+fn mgh(made: &mut Maker, bytes: &[u8]) {
+    for at in (0..28).chain(30..90).step_by(4) {
+        for value in VALUES {
+            let changed = with(bytes, at, &value.to_be_bytes());
+            made.add(format!("four bytes at {at} are {value:x}"), "odd.mgh", &changed);
+            made.add(format!("four bytes at {at} are {value:x}"), "odd.mgz", &gzip(&changed));
         }
     }
 }

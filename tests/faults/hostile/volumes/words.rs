@@ -32,7 +32,7 @@ const fn field(file: &'static str, after: &'static str, until: char) -> Field {
     Field { file, after, until }
 }
 
-const FIELDS: [Field; 44] = [
+const FIELDS: [Field; 49] = [
     field("digits.nrrd", "type: ", '\n'),
     field("digits.nrrd", "dimension: ", '\n'),
     field("digits.nrrd", "sizes: ", '\n'),
@@ -75,6 +75,11 @@ const FIELDS: [Field; 44] = [
     field("described.dat", "Sequences: ", '\n'),
     field("described.ini", "dimx:", '\n'),
     field("described.ivf", "Dimension x=\"", '"'),
+    field("cube.fits", "BITPIX  = ", '/'),
+    field("cube.fits", "NAXIS   = ", '/'),
+    field("cube.fits", "NAXIS3  = ", '/'),
+    field("cube.fits", "BLANK   = ", ' '),
+    field("cube.fits", "CDELT1  = ", ' '),
     field("array.npy", "'shape': (", ')'),
     field("array.npy", "'descr': '", '\''),
 ];

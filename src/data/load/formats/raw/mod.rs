@@ -47,6 +47,12 @@ pub(super) const READER: Reader =
 
 const HELP: &str = "check --dims, --type and --endian";
 
+/// Whether a file's name, or a file beside it, says how its voxels are stored.
+pub(super) fn is_described(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    name::parse(&name, None).is_some() || sidecar::beside(path).is_some()
+}
+
 /// Loads a RAW file.
 fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     let path = source.path;

@@ -1,0 +1,126 @@
+//! How an array of a FITS file is stored, and what its axes stand for: three of them are a volume, one more are several.
+
+use super::super::number::Number;
+use super::super::{Dimension, LoadError};
+use super::header::Header;
+use crate::data::attempt::Attempt;
+
+/// An array as volumes.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Layout {
+    pub(super) number: Number,
+    /// Voxels along x, y, z.
+    pub(super) dims: [u64; 3],
+    /// Axes of the file that these are, counted from 1; `None` for the one slice of a picture.
+    pub(super) axes: [Option<usize>; 3],
+    /// Axis along which there are several volumes, counted from 1, and how many.
+    pub(super) outer: Option<(usize, u64)>,
+    /// Slope and intercept of the values (`BSCALE`, `BZERO`).
+    pub(super) scale: [f64; 2],
+    /// Value of pixels that were not measured (`BLANK`), scaled.
+    pub(super) blank: Option<f64>,
+}
+
+impl Layout {
+    /// The layout that a header announces; `None` for nothing, and for fewer than two axes. Of more than three axes those of
+    /// one element alone stand for nothing.
+    ///
+    /// # Errors
+    /// `BadInput` for a type that there is not, and for more than four axes.
+    pub(super) fn new(attempt: Attempt<'_>, header: &Header) -> Result<Option<Self>, LoadError> {
+        let lengths = header.axes(attempt)?;
+        if lengths.contains(&0) {
+            return Ok(None);
+        }
+        let bits = header.required_int(attempt, "BITPIX")?;
+        let Some(number) = number_of(bits) else {
+            return Err(attempt.bad_input(
+                "BITPIX",
+                format!("there are no values of {bits} bits; 8, 16, 32, 64, -32 and -64 are read"),
+                "copy or download the file again",
+            ));
+        };
+        let mut axes: Vec<(usize, u64)> = (1..).zip(lengths).collect();
+        while axes.len() > 3 {
+            let Some(single) = axes.iter().rposition(|&(_, length)| length == 1) else { break };
+            axes.remove(single);
+        }
+        let (grid, outer) = match axes[..] {
+            [] | [_] => return Ok(None),
+            [x, y] => ([Some(x), Some(y), None], None),
+            [x, y, z] => ([Some(x), Some(y), Some(z)], None),
+            [x, y, z, outer] => ([Some(x), Some(y), Some(z)], Some(outer)),
+            _ => {
+                return Err(attempt.bad_input(
+                    "NAXIS",
+                    format!("an array of {} axes longer than 1 is not read: two to four are", axes.len()),
+                    "cut it along the others first: python -c \"from astropy.io import fits; \
+                     fits.writeto('OUT.fits', fits.getdata('IN.fits')[0])\"",
+                ));
+            }
+        };
+        let scale = [header.float("BSCALE").unwrap_or(1.0), header.float("BZERO").unwrap_or(0.0)];
+        // Only whole numbers have one: others say it with NaN.
+        let blank = if bits > 0 { header.int(attempt, "BLANK").ok().flatten() } else { None };
+        Ok(Some(Self {
+            number,
+            dims: grid.map(|axis| axis.map_or(1, |(_, length)| length)),
+            axes: grid.map(|axis| axis.map(|(axis, _)| axis)),
+            outer,
+            scale,
+            blank: blank.map(|blank| scaled(blank as f64, scale, number)),
+        }))
+    }
+
+    /// In what the volumes differ, and what the one with a number is called.
+    pub(super) fn dimension(&self, header: &Header) -> (Dimension, impl Fn(usize) -> String + use<>) {
+        let axis = self.outer.map_or(0, |(axis, _)| axis);
+        let is_stokes = header.text(&format!("CTYPE{axis}")).eq_ignore_ascii_case("STOKES");
+        let at = |keyword: &str, otherwise| header.float(&format!("{keyword}{axis}")).unwrap_or(otherwise);
+        let (value, pixel, step) = (at("CRVAL", 0.0), at("CRPIX", 0.0), at("CDELT", 1.0));
+        let name = move |number: usize| {
+            let code = value + step * (number as f64 + 1.0 - pixel);
+            if is_stokes { stokes(code).to_owned() } else { String::new() }
+        };
+        (if is_stokes { Dimension::Channel } else { Dimension::Frame }, name)
+    }
+}
+
+/// Numbers by `BITPIX` (table 8 of the standard).
+fn number_of(bits: i64) -> Option<Number> {
+    Some(match bits {
+        8 => Number::U8,
+        16 => Number::I16,
+        32 => Number::I32,
+        64 => Number::I64,
+        -32 => Number::F32,
+        -64 => Number::F64,
+        _ => return None,
+    })
+}
+
+/// A stored number as the value that voxels have. Those of 8 and 16 bits that do not stay whole are 32-bit floats.
+fn scaled(stored: f64, [slope, intercept]: [f64; 2], number: Number) -> f64 {
+    let value = stored.mul_add(slope, intercept);
+    let is_whole = slope.fract() == 0.0 && intercept.fract() == 0.0;
+    if is_whole || number.bytes() > 2 { value } else { f64::from(value as f32) }
+}
+
+/// Polarisations by their codes (table 28).
+fn stokes(code: f64) -> &'static str {
+    match code.round() as i64 {
+        1 => "I",
+        2 => "Q",
+        3 => "U",
+        4 => "V",
+        -1 => "RR",
+        -2 => "LL",
+        -3 => "RL",
+        -4 => "LR",
+        -5 => "XX",
+        -6 => "YY",
+        -7 => "XY",
+        -8 => "YX",
+        _ => "",
+    }
+}

@@ -1,0 +1,37 @@
+//! Rows from the top down, as pictures have them, where a file has them from the lowest on.
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use crate::data::Samples;
+use crate::data::attempt::Kept;
+use crate::data::values::samples::with_samples;
+
+/// What is kept of a grid whose rows are counted from the top, in a file that counts them from the lowest: the same rows, in
+/// the opposite order. Not for blocks that are averaged, the last of which may be smaller.
+pub(super) fn kept_in_file(kept: Kept) -> Kept {
+    let [_, rows, _] = kept.dims();
+    let lowest = kept.low[1] + rows.saturating_sub(1) * kept.step[1];
+    let (mut low, mut high, mut step) = (kept.low, kept.high, kept.step);
+    low[1] = kept.grid[1] - 1 - lowest;
+    high[1] = kept.grid[1] - kept.low[1];
+    step[1] = step[1].min(high[1] - low[1]);
+    Kept { low, high, step, ..kept }
+}
+
+/// Puts the last row of each slice first.
+pub(super) fn reverse(samples: &mut Samples, [nx, ny, _]: [usize; 3]) {
+    with_samples!(samples, values => {
+        for slice in values.chunks_exact_mut(nx * ny) {
+            for row in 0..ny / 2 {
+                let (above, below) = slice.split_at_mut((ny - 1 - row) * nx);
+                above[row * nx..(row + 1) * nx].swap_with_slice(&mut below[..nx]);
+            }
+        }
+    });
+}
+
+/// Indices of a grid of so many rows, counted from the top, to those of the file.
+pub(super) fn file_from_index(rows: u64) -> DAffine3 {
+    let matrix3 = DMat3::from_diagonal(DVec3::new(1.0, -1.0, 1.0));
+    DAffine3 { matrix3, translation: DVec3::new(0.0, rows as f64 - 1.0, 0.0) }
+}

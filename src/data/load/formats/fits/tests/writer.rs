@@ -1,0 +1,62 @@
+//! FITS files made by hand, card by card.
+
+/// A unit of a file.
+#[derive(Clone)]
+pub(super) struct Unit {
+    cards: Vec<String>,
+    data: Vec<u8>,
+}
+
+/// A block of 2880 bytes, or several, filled up with a byte.
+fn filled(mut bytes: Vec<u8>, with: u8) -> Vec<u8> {
+    bytes.resize(bytes.len().next_multiple_of(2880), with);
+    bytes
+}
+
+impl Unit {
+    /// The first unit of a file: an array of some bits, the fastest axis first.
+    pub(super) fn primary(bits: i32, axes: &[u64], data: Vec<u8>) -> Self {
+        Self::new("SIMPLE  =                    T", bits, axes, data)
+    }
+
+    /// A unit that follows others.
+    pub(super) fn extension(kind: &str, bits: i32, axes: &[u64], data: Vec<u8>) -> Self {
+        Self::new(&format!("XTENSION= '{kind:<8}'"), bits, axes, data).with("PCOUNT", "0").with("GCOUNT", "1")
+    }
+
+    fn new(first: &str, bits: i32, axes: &[u64], data: Vec<u8>) -> Self {
+        let mut unit = Self { cards: vec![first.to_owned()], data };
+        unit = unit.with("BITPIX", bits).with("NAXIS", axes.len());
+        for (axis, length) in axes.iter().enumerate() {
+            unit = unit.with(&format!("NAXIS{}", axis + 1), length);
+        }
+        unit
+    }
+
+    /// The unit with a keyword and its value, in place of what it had.
+    pub(super) fn with(mut self, keyword: &str, value: impl std::fmt::Display) -> Self {
+        let start = format!("{keyword:<8}= ");
+        let card = format!("{start}{value:>20} / a comment");
+        match self.cards.iter_mut().find(|card| card.starts_with(&start)) {
+            Some(old) => *old = card,
+            None => self.cards.push(card),
+        }
+        self
+    }
+
+    /// The unit without a keyword.
+    pub(super) fn without(mut self, keyword: &str) -> Self {
+        self.cards.retain(|card| !card.starts_with(&format!("{keyword:<8}=")));
+        self
+    }
+
+    /// The header without the card that ends it.
+    pub(super) fn open_header(&self) -> Vec<u8> {
+        self.cards.iter().flat_map(|card| format!("{card:<80}").into_bytes()).collect()
+    }
+
+    pub(super) fn bytes(&self) -> Vec<u8> {
+        let end = format!("{:<80}", "END").into_bytes();
+        [filled([self.open_header(), end].concat(), b' '), filled(self.data.clone(), 0)].concat()
+    }
+}

@@ -1,0 +1,182 @@
+//! Units of a FITS file (header and data units): which of them are pictures, and where their data begin.
+
+use super::super::content::Content;
+use super::super::samples::Fault;
+use super::super::{LoadControl, LoadError, Offer};
+use super::header::{BLOCK_BYTES, Header, unread};
+use super::layout::Layout;
+use crate::data::attempt::Attempt;
+use crate::data::plain;
+
+/// Most units of a file that are looked at: spectrographs and mosaics have some hundred.
+const MOST_UNITS: usize = 1024;
+
+/// What a unit holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// An array, or nothing.
+    Image,
+    /// An array in compressed tiles, stored as a table.
+    CompressedImage,
+    Table,
+    /// Visibilities of interferometers (`GROUPS`).
+    RandomGroups,
+    Other,
+}
+
+/// An array that is a volume, or several.
+#[derive(Debug)]
+pub(super) struct Image {
+    /// Position of its unit in the file; the primary one is 0.
+    number: usize,
+    pub(super) header: Header,
+    /// Where its data begin, in bytes of the content.
+    pub(super) data_start: u64,
+    pub(super) layout: Layout,
+}
+
+impl Image {
+    /// As one of several to choose from: by its number, as other programs count units, or by its name.
+    pub(super) fn offer(&self) -> Offer {
+        let name = match (self.header.text("EXTNAME"), self.number) {
+            ("", 0) => "PRIMARY".to_owned(),
+            (name, _) => plain(name, 80),
+        };
+        Offer { key: self.number.to_string(), name, dims: Some(self.layout.dims) }
+    }
+}
+
+/// What a file holds.
+#[derive(Debug, Default)]
+pub(super) struct Units {
+    pub(super) images: Vec<Image>,
+    /// Why an array is no volume, of the first that is none.
+    refused: Option<LoadError>,
+    kinds: Vec<Kind>,
+}
+
+impl Units {
+    /// Looks at all units of a file, from its beginning.
+    ///
+    /// # Errors
+    /// `BadInput` for a first header that cannot be and for broken gzip data, `Limit` for a header without an end. What else is
+    /// wrong behind the first unit ends the list.
+    pub(super) fn read(
+        attempt: Attempt<'_>,
+        content: &mut Content,
+        is_gzip: bool,
+        control: &LoadControl,
+    ) -> Result<Self, LoadError> {
+        let mut units = Self::default();
+        let mut at = 0u64;
+        while units.kinds.len() < MOST_UNITS {
+            let is_first = units.kinds.is_empty();
+            let Some(header) = Header::read(attempt, content, is_first, control)? else { break };
+            // Whatever else follows the last unit is none.
+            if !is_first && header.first() != "XTENSION" {
+                break;
+            }
+            let data_start = at.saturating_add(header.bytes);
+            let data_bytes = match data_bytes(attempt, &header) {
+                Ok(bytes) => bytes,
+                Err(error) if is_first => return Err(error),
+                Err(_) => break,
+            };
+            units.add(attempt, header, data_start);
+            at = data_start.saturating_add(data_bytes.div_ceil(BLOCK_BYTES).saturating_mul(BLOCK_BYTES));
+            match content.go_to(at, control).map_err(Fault::of_stream) {
+                Ok(()) => {}
+                // Behind the end of the file, or of what can be said of a place in one, there are no more.
+                Err(Fault::Short { .. }) => break,
+                Err(Fault::Corrupt(_)) if !is_gzip => break,
+                Err(fault) => return Err(unread(attempt, fault)),
+            }
+        }
+        Ok(units)
+    }
+
+    fn add(&mut self, attempt: Attempt<'_>, header: Header, data_start: u64) {
+        let number = self.kinds.len();
+        let kind = kind_of(&header);
+        self.kinds.push(kind);
+        if kind != Kind::Image {
+            return;
+        }
+        match Layout::new(attempt, &header) {
+            Ok(Some(layout)) => self.images.push(Image { number, header, data_start, layout }),
+            Ok(None) => {}
+            Err(error) => {
+                self.refused.get_or_insert(error);
+            }
+        }
+    }
+
+    /// Why none of the units is a volume.
+    pub(super) fn without_images(self, attempt: Attempt<'_>) -> LoadError {
+        let has = |kind| self.kinds.contains(&kind);
+        if let Some(error) = self.refused {
+            error
+        } else if has(Kind::CompressedImage) {
+            attempt.bad_input(
+                "ZIMAGE",
+                "its pictures are compressed in tiles (as fpack does), which is not read",
+                "unpack it: funpack -O OUT.fits IN.fits.fz",
+            )
+        } else if has(Kind::RandomGroups) {
+            attempt.bad_input(
+                "GROUPS",
+                "it holds visibilities of an interferometer (random groups), not a picture",
+                "make an image of them first, for example with CASA's tclean, and export it with exportfits",
+            )
+        } else if has(Kind::Table) {
+            attempt.bad_input(
+                "XTENSION",
+                "it holds tables and no picture",
+                "open a file with an image of two axes or more; TOPCAT shows tables",
+            )
+        } else {
+            attempt.bad_input(
+                "NAXIS",
+                "it holds no picture: no unit has two axes or more",
+                "open a file with an image of two to four axes",
+            )
+        }
+    }
+
+    /// What the user is told of units that cannot be chosen.
+    pub(super) fn remark(&self) -> Option<&'static str> {
+        let is_packed = self.kinds.contains(&Kind::CompressedImage);
+        is_packed.then_some("pictures that are compressed in tiles are left out: funpack unpacks them")
+    }
+}
+
+fn kind_of(header: &Header) -> Kind {
+    match (header.first(), header.text("XTENSION")) {
+        ("XTENSION", "BINTABLE" | "A3DTABLE") if header.is_true("ZIMAGE") => Kind::CompressedImage,
+        ("XTENSION", "BINTABLE" | "A3DTABLE" | "TABLE") => Kind::Table,
+        ("XTENSION", "IMAGE" | "IUEIMAGE") => Kind::Image,
+        ("XTENSION", _) => Kind::Other,
+        _ if header.is_true("GROUPS") && header.text("NAXIS1") == "0" => Kind::RandomGroups,
+        _ => Kind::Image,
+    }
+}
+
+/// Bytes of a unit's data, without what fills the last block (section 4.4.1.2).
+fn data_bytes(attempt: Attempt<'_>, header: &Header) -> Result<u64, LoadError> {
+    let bits = header.required_int(attempt, "BITPIX")?.unsigned_abs();
+    let mut axes = header.axes(attempt)?;
+    let is_grouped = kind_of(header) == Kind::RandomGroups;
+    if is_grouped {
+        axes.remove(0);
+    }
+    if axes.is_empty() {
+        return Ok(0);
+    }
+    let count = |keyword, otherwise: u64| {
+        let said = header.int(attempt, keyword)?;
+        Ok::<_, LoadError>(said.map_or(otherwise, |n| u64::try_from(n).unwrap_or(0)))
+    };
+    let (parameters, groups) = (count("PCOUNT", 0)?, count("GCOUNT", 1)?);
+    let elements = axes.into_iter().fold(1u64, u64::saturating_mul);
+    Ok(elements.saturating_add(parameters).saturating_mul(groups).saturating_mul(bits / 8))
+}

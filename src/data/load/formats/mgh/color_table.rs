@@ -1,0 +1,90 @@
+//! Names and colours of labels behind the voxels of an MGH file, where `FreeSurfer` has put them.
+//!
+//! After `fio.cpp`, `tags.cpp` and `colortab.cpp` of `FreeSurfer` (`TAGreadStart`, `znzCTABreadFromBinary`): five real numbers
+//! about the acquisition, then tags. All numbers are big-endian.
+
+use crate::data::Labels;
+
+/// Bytes behind the voxels that are looked at: a table of the two thousand labels of the finest atlases has 100 KiB, and
+/// before it lie the commands that made the file.
+pub(super) const MOST_BYTES: u64 = 4 << 20;
+
+/// Repetition time, flip angle, echo time, inversion time, field of view.
+const ACQUISITION_BYTES: usize = 20;
+
+/// Tags (`tags.h`) whose length is not said as others say it.
+const OLD_COLOR_TABLE: i32 = 1;
+const OLD_REAL_RAS: i32 = 2;
+const OLD_SURFACE_GEOMETRY: i32 = 20;
+const OLD_TRANSFORM: i32 = 30;
+
+/// Version of tables in which each entry has its number.
+const WITH_NUMBERS: i32 = -2;
+
+/// The labels of what follows the voxels; none where there is no table, or one that cannot be.
+pub(super) fn labels(footer: &[u8]) -> Labels {
+    find(&mut Bytes { left: footer }).unwrap_or_default()
+}
+
+fn find(bytes: &mut Bytes<'_>) -> Option<Labels> {
+    bytes.take(ACQUISITION_BYTES)?;
+    loop {
+        let skip = match bytes.int()? {
+            OLD_COLOR_TABLE => return table(bytes),
+            OLD_REAL_RAS | OLD_SURFACE_GEOMETRY => 0,
+            // Without the zero at its end.
+            OLD_TRANSFORM => i64::from(bytes.int()?) - 1,
+            // Nothing follows.
+            0 => return None,
+            _ => bytes.long()?,
+        };
+        bytes.take(usize::try_from(skip).ok()?)?;
+    }
+}
+
+fn table(bytes: &mut Bytes<'_>) -> Option<Labels> {
+    let first = bytes.int()?;
+    let has_numbers = first == WITH_NUMBERS;
+    // The highest number, in tables whose entries have theirs.
+    let count = if has_numbers { bytes.int()? } else { first };
+    bytes.text()?;
+    let count = if has_numbers { bytes.int()? } else { count };
+    let mut labels = Labels::default();
+    for at in 0..count {
+        let number = if has_numbers { bytes.int()? } else { at };
+        let name = bytes.text()?;
+        let parts = [bytes.int()?, bytes.int()?, bytes.int()?];
+        let _transparency = bytes.int()?;
+        labels.insert(i64::from(number), &name, Some(parts.map(|part| part as f32 / 255.0)));
+    }
+    Some(labels)
+}
+
+/// What is left of some bytes.
+struct Bytes<'a> {
+    left: &'a [u8],
+}
+
+impl<'a> Bytes<'a> {
+    fn take(&mut self, count: usize) -> Option<&'a [u8]> {
+        let (taken, left) = self.left.split_at_checked(count)?;
+        self.left = left;
+        Some(taken)
+    }
+
+    fn int(&mut self) -> Option<i32> {
+        self.take(4)?.try_into().ok().map(i32::from_be_bytes)
+    }
+
+    fn long(&mut self) -> Option<i64> {
+        self.take(8)?.try_into().ok().map(i64::from_be_bytes)
+    }
+
+    /// Text behind its length, up to the zero at its end.
+    fn text(&mut self) -> Option<String> {
+        let length = usize::try_from(self.int()?).ok()?;
+        let bytes = self.take(length)?;
+        let text = bytes.split(|&byte| byte == 0).next().unwrap_or_default();
+        Some(String::from_utf8_lossy(text).into_owned())
+    }
+}

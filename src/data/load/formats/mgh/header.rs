@@ -1,0 +1,170 @@
+//! Header of an MGH file: 284 bytes, big-endian, of which the first 90 are used.
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::super::LoadError;
+use super::super::number::Number;
+use super::super::placement::Placement;
+use crate::data::attempt::Attempt;
+
+/// Bytes before the voxels: 90 that say something, the rest is kept free (`UNUSED_SPACE_SIZE` of `mri.h`).
+pub(super) const HEADER_BYTES: usize = 284;
+
+/// Version of the format; there has been but one.
+const VERSION: u8 = 1;
+
+/// Intent of numbers that are labels; newer programs put the intent above the version (`MGZ_INTENT_LABEL`).
+const LABEL_INTENT: u8 = 1;
+
+/// Intents above which a file without a mark is not believed to be one of these: fewer than ten are in use.
+const HIGHEST_INTENT: i32 = 15;
+
+/// Voxels along an axis above which a file without a mark is not believed to be one of these.
+const MOST_ALONG: i32 = 1 << 24;
+
+/// Axes where the header gives none: slices from behind to the front, rows from the head down (`mghRead` of `mriio.cpp`).
+const CORONAL: DMat3 =
+    DMat3::from_cols(DVec3::new(-1.0, 0.0, 0.0), DVec3::new(0.0, 0.0, -1.0), DVec3::new(0.0, 1.0, 0.0));
+
+const HELP: &str = "copy the file again, or write it again with mri_convert";
+
+/// What a header says.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Header {
+    /// Voxels along x, y, z.
+    pub(super) dims: [u64; 3],
+    /// Volumes behind each other.
+    pub(super) frames: u64,
+    pub(super) number: Number,
+    /// Whether the file says that its numbers are labels.
+    pub(super) are_labels: bool,
+    /// Where the voxels lie, unless `goodRASFlag` says that nobody knows.
+    place: Option<Place>,
+}
+
+/// Place of the voxels.
+#[derive(Debug, Clone, PartialEq)]
+struct Place {
+    /// Distances between voxel centres in millimetres.
+    spacing_mm: DVec3,
+    /// Directions of the three axes, right-anterior-superior.
+    directions: DMat3,
+    /// Place of index `dims / 2` (`c_ras`), in right-anterior-superior millimetres.
+    center: DVec3,
+}
+
+/// Whether a file that begins like this is one. The format has no mark: every field must be what it can be.
+pub(super) fn is_mgh(bytes: &[u8]) -> bool {
+    let fields = Fields(bytes);
+    let is_version =
+        fields.int(0) & 0xff == i32::from(VERSION) && (0..=HIGHEST_INTENT).contains(&(fields.int(0) >> 8));
+    let are_counts = [4, 8, 12, 16].into_iter().all(|at| (1..=MOST_ALONG).contains(&fields.int(at)));
+    let is_placed = fields.short(28);
+    let place = fields.place();
+    let is_place = is_placed == 0
+        || is_placed == 1
+            && place.spacing_mm.cmpgt(DVec3::ZERO).all()
+            && place.spacing_mm.is_finite()
+            && place.directions.is_finite()
+            && place.center.is_finite();
+    bytes.len() >= HEADER_BYTES && is_version && are_counts && number_of(fields.int(20)).is_ok() && is_place
+}
+
+impl Header {
+    /// The header at the beginning of a file.
+    ///
+    /// # Errors
+    /// `BadInput` where it is cut off, of another version, or says what cannot be.
+    pub(super) fn parse(attempt: Attempt<'_>, bytes: &[u8]) -> Result<Self, LoadError> {
+        let fields = Fields(bytes);
+        if bytes.len() < HEADER_BYTES {
+            let why =
+                format!("the header is truncated: {HEADER_BYTES} bytes expected, {} found", bytes.len());
+            return Err(attempt.bad_input("header", why, HELP));
+        }
+        let [_, _, intent, version] = fields.array(0);
+        if version != VERSION || fields.int(0) >> 16 != 0 {
+            let why = format!("version {VERSION} was expected, {} was found", fields.int(0));
+            return Err(attempt.bad_input("version", why, HELP));
+        }
+        let [x, y, z, frames] = [4, 8, 12, 16].map(|at| fields.int(at));
+        let count = |n: i32| u64::try_from(n).ok().filter(|&n| n > 0);
+        let (Some(dims), Some(frames)) = (all([x, y, z].map(count)), count(frames)) else {
+            let why = format!("{x} x {y} x {z} voxels in {frames} frames cannot be");
+            return Err(attempt.bad_input("width, height, depth, nframes", why, HELP));
+        };
+        let number = number_of(fields.int(20)).map_err(|why| {
+            let help = "write it again with numbers: mri_convert --out_data_type float IN OUT.mgz";
+            attempt.bad_input("type", why, help)
+        })?;
+        let place = (fields.short(28) > 0).then(|| fields.place());
+        Ok(Self { dims, frames, number, are_labels: intent == LABEL_INTENT, place })
+    }
+
+    /// Where the voxels lie.
+    pub(super) fn placement(&self) -> Placement {
+        let half = DVec3::from(self.dims.map(|n| n as f64)) / 2.0;
+        let centred =
+            |axes: DMat3, center: DVec3| DAffine3 { matrix3: axes, translation: center - axes * half };
+        match &self.place {
+            Some(place) => {
+                let axes = place.directions * DMat3::from_diagonal(place.spacing_mm);
+                Placement::ras(centred(axes, place.center))
+            }
+            None => Placement::ras(centred(CORONAL, DVec3::ZERO)).of_no_body().of_unknown_scale().remarked(Some(
+                "the header does not say where its voxels lie (goodRASFlag is 0): they are taken for coronal slices",
+            )),
+        }
+    }
+}
+
+/// The number type that a code stands for (`MRI_UCHAR` … of `mri.h`), or why it is not read.
+fn number_of(code: i32) -> Result<Number, String> {
+    let why = match code {
+        0 => return Ok(Number::U8),
+        1 => return Ok(Number::I32),
+        3 => return Ok(Number::F32),
+        4 => return Ok(Number::I16),
+        10 => return Ok(Number::U16),
+        2 => "long whole numbers (type 2), whose length depends on the machine, are not read",
+        5 => "voxels of one bit (type 5) are not read",
+        6 => "tensors (type 6) are not read",
+        7 | 8 => "complex numbers (types 7 and 8) are not read",
+        9 => "colours (type 9) are not read",
+        _ => return Err(format!("there is no type {code}; 0, 1, 3, 4 and 10 are read")),
+    };
+    Err(why.to_owned())
+}
+
+/// Three values, where all are there.
+fn all<T: Copy>(values: [Option<T>; 3]) -> Option<[T; 3]> {
+    let [x, y, z] = values;
+    Some([x?, y?, z?])
+}
+
+/// Big-endian numbers at places; 0 behind the end.
+struct Fields<'a>(&'a [u8]);
+
+impl Fields<'_> {
+    fn array<const N: usize>(&self, at: usize) -> [u8; N] {
+        let found = self.0.get(at..at + N).and_then(|bytes| bytes.try_into().ok());
+        found.unwrap_or([0; N])
+    }
+
+    fn int(&self, at: usize) -> i32 {
+        i32::from_be_bytes(self.array(at))
+    }
+
+    fn short(&self, at: usize) -> i16 {
+        i16::from_be_bytes(self.array(at))
+    }
+
+    fn vector(&self, at: usize) -> DVec3 {
+        DVec3::from_array([0, 4, 8].map(|step| f64::from(f32::from_be_bytes(self.array(at + step)))))
+    }
+
+    fn place(&self) -> Place {
+        let directions = DMat3::from_cols(self.vector(42), self.vector(54), self.vector(66));
+        Place { spacing_mm: self.vector(30), directions, center: self.vector(78) }
+    }
+}
