@@ -21,6 +21,7 @@ pub(crate) use attempt::address_bytes_left;
 pub use bricks::Bricks;
 pub use cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIGMA_TOLERANCE};
 pub use dataset::Dataset;
+pub(crate) use foreign::natural;
 pub use foreign::{fingerprint, plain, read_small, single_line, without_controls};
 pub use hints::{Hints, Label, Labels, MAX_LABEL_NAME, MAX_LABELS, Meaning, Modality};
 pub use histogram::{HISTOGRAM_BINS, Histogram};
