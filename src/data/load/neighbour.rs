@@ -2,12 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use super::LoadControl;
-use super::formats::folder::natural;
 use super::formats::{dicom, reader_of};
 use super::reading::input::Input;
 use super::reading::reader::Start;
 use crate::data::attempt::Attempt;
+use crate::data::natural;
 
 /// Most entries of a folder that are looked at: as many as a folder of slices may have.
 const MOST_ENTRIES: usize = 1 << 16;

@@ -1,15 +1,19 @@
 //! Which pictures belong together: those of one series that are of one size and lie in parallel.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
 use super::super::LoadError;
 use super::header::Header;
 use super::header::plane::Plane;
-use super::pixels::shape::Shape;
-use super::pixels::store::check_room;
-use crate::data::attempt::{Attempt, Offer};
+use super::header::segments::SegmentationType;
+use super::header::taken::Attribute;
+use super::layer::{Filling, Slice};
+use super::mosaic::Mosaic;
+use super::pixels::room::{check_room, readable_codec};
+use super::pixels::shape::{Colors, Shape};
+use crate::data::attempt::Attempt;
 use crate::data::plain;
 
 /// Pictures whose places differ by less in every cosine lie in parallel.
@@ -21,75 +25,107 @@ const SAME_SPACING: f64 = 1e-3;
 /// Groups of a series that a picture is compared with: a scan has three directions, a look around a joint has dozens.
 const MOST_COMPARED: usize = 64;
 
-/// A picture.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Slice {
-    /// Its file, by its number among the headers.
-    pub(super) file: usize,
-    /// From 0.
-    pub(super) frame: usize,
-    pub(super) plane: Plane,
-}
-
-/// Pictures that make a volume, or one for each time step.
+/// Pictures that make a volume, or one for each phase.
 #[derive(Debug)]
 pub(super) struct Group {
     pub(super) shape: Shape,
     pub(super) slices: Vec<Slice>,
+    /// What stands where slices are missing.
+    pub(super) filling: Filling,
+    /// They are masks of segments.
+    pub(super) has_masks: bool,
 }
 
-/// Puts the pictures of all files together, the series by their numbers; and says what was left out.
-///
-/// # Errors
-/// What is wrong with the pixels of the first file, if there is something wrong with those of all.
-pub(super) fn groups(headers: &[Header]) -> Result<(Vec<Group>, Option<String>), LoadError> {
+/// A file whose pixels cannot be read.
+#[derive(Debug)]
+pub(super) struct UnreadableFile {
+    /// Its number among the headers.
+    pub(super) file: usize,
+    pub(super) why: LoadError,
+}
+
+/// The pictures of many files.
+#[derive(Debug, Default)]
+pub(super) struct Grouping {
+    /// The series by their numbers.
+    pub(super) groups: Vec<Group>,
+    /// All image types, by which [`Attribute::ImageType`] counts them.
+    pub(super) image_types: Vec<String>,
+    pub(super) unreadable: Vec<UnreadableFile>,
+}
+
+/// Puts the pictures of all files together.
+pub(super) fn groups(headers: &[Header]) -> Grouping {
+    let image_types: BTreeSet<&str> = headers.iter().flat_map(image_types_of).collect();
+    let image_types: Vec<String> = image_types.into_iter().map(str::to_owned).collect();
     // A file of many frames is a volume by itself.
     let own = |file: usize| (headers[file].frame_count() > 1).then_some(file);
     let mut of_series: BTreeMap<(i64, &str, Option<usize>, Shape), Vec<Group>> = BTreeMap::new();
-    let (mut wrong, mut count_of_wrong) = (None, 0);
+    let mut unreadable = Vec::new();
     for (file, header) in headers.iter().enumerate() {
         let shape = match shape_of(header) {
             Ok(shape) => shape,
-            Err(error) => {
-                wrong = wrong.or(Some(error));
-                count_of_wrong += 1;
+            Err(why) => {
+                unreadable.push(UnreadableFile { file, why });
                 continue;
             }
         };
+        let mosaic = Mosaic::new(header);
+        let shape = mosaic.as_ref().map_or(shape, |mosaic| mosaic.tile_shape(shape));
         let number = header.found.series_number.map_or(i64::MAX, |number| number as i64);
         let groups = of_series.entry((number, &header.found.series, own(file), shape)).or_default();
-        let count = usize::try_from(header.frame_count()).unwrap_or(usize::MAX);
-        for frame in 0..count.min(super::header::found::MOST_FRAMES) {
-            let slice = Slice { file, frame, plane: header.found.plane(frame) };
+        let slices = frames(file, header, &image_types).flat_map(|slice| match &mosaic {
+            Some(mosaic) => mosaic.tiles(&slice),
+            None => vec![slice],
+        });
+        for slice in slices {
             let fits = |group: &&mut Group| {
                 group.slices.first().is_some_and(|first| lie_in_parallel(&first.plane, &slice.plane))
             };
             match groups.iter_mut().rev().take(MOST_COMPARED).find(fits) {
                 Some(group) => group.slices.push(slice),
-                None => groups.push(Group { shape, slices: vec![slice] }),
+                None => groups.push(Group::of_first(header, shape, slice)),
             }
         }
     }
-    let all: Vec<Group> = of_series.into_values().flatten().collect();
-    match wrong {
-        Some(error) if all.is_empty() => Err(error),
-        wrong => Ok((all, wrong.map(|error| left_out(count_of_wrong, &error)))),
-    }
+    Grouping { groups: of_series.into_values().flatten().collect(), image_types, unreadable }
 }
 
-/// Says how many files are left out, and why the first of them.
-pub(super) fn left_out(count: usize, why: &LoadError) -> String {
-    let files =
-        if count == 1 { "a file is left out".to_owned() } else { format!("{count} files are left out") };
-    format!("{files}: {}", plain(&why.to_string(), 400))
+/// The frames of a file.
+fn frames<'a>(
+    file: usize,
+    header: &'a Header,
+    image_types: &'a [String],
+) -> impl Iterator<Item = Slice> + 'a {
+    let count = usize::try_from(header.frame_count()).unwrap_or(usize::MAX);
+    (0..count.min(super::header::place::MOST_FRAMES)).map(move |frame| {
+        let mut plane = header.found.plane(frame);
+        let text = header.found.image_type(frame);
+        let number = image_types.binary_search_by(|known| known.as_str().cmp(text)).ok();
+        plane.taken.set(Attribute::ImageType, number.map(|number| number as f64));
+        Slice { file, frame, tile: None, plane }
+    })
 }
 
-/// How the pixels of a file are stored, if it has room for them.
+/// The image types of a file's frames.
+fn image_types_of(header: &Header) -> impl Iterator<Item = &str> {
+    let of_frames = header.found.frame_types.iter().map(String::as_str);
+    of_frames.chain([header.found.image_type.as_str()])
+}
+
+/// How the pixels of a file are stored, if they are read and the file has room for them.
 pub(super) fn shape_of(header: &Header) -> Result<Shape, LoadError> {
     let attempt = Attempt { what: super::WHAT, path: &header.path };
     let shape = Shape::of(attempt, header)?;
+    readable_codec(attempt, header)?;
     check_room(attempt, header, &shape)?;
     Ok(shape)
+}
+
+/// Says how many pictures of how many are left out, and why the first of them.
+pub(super) fn left_out(count: usize, total: usize, what: &str, why: &LoadError) -> String {
+    let are = if count == 1 { "is" } else { "are" };
+    format!("{count} of {total} {what} {are} left out: {}", plain(&why.to_string(), 400))
 }
 
 fn lie_in_parallel(one: &Plane, other: &Plane) -> bool {
@@ -111,14 +147,28 @@ fn lie_in_parallel(one: &Plane, other: &Plane) -> bool {
 }
 
 impl Group {
-    /// How users are offered it.
-    pub(super) fn offer(&self, number: usize, headers: &[Header]) -> Offer {
-        let dims = [self.shape.columns as u64, self.shape.rows as u64, self.slices.len() as u64];
-        let Some(first) = self.slices.first() else { return Offer::numbered(number, "", dims) };
+    fn of_first(header: &Header, shape: Shape, first: Slice) -> Self {
+        let found = &header.found;
+        let is_fraction = found.segmentation == Some(SegmentationType::Fractional);
+        let has_frames_by_segment =
+            matches!(found.segmentation, Some(SegmentationType::Binary | SegmentationType::Fractional));
+        // Shares of one segment are a field by themselves.
+        let has_masks = has_frames_by_segment && !(is_fraction && found.segments.len() == 1);
+        let filling = match (found.segmentation, shape.colors) {
+            (Some(_), _) => Filling::NoSegment,
+            (None, Colors::Palette) => Filling::Nearest,
+            (None, _) => Filling::Means,
+        };
+        Self { shape, slices: vec![first], filling, has_masks }
+    }
+
+    /// What users are told that it is.
+    pub(super) fn name(&self, headers: &[Header]) -> String {
+        let Some(first) = self.slices.first() else { return String::new() };
         let found = &headers[first.file].found;
         let words = [&found.modality, found.description(), direction(&first.plane)];
         let words: Vec<&str> = words.into_iter().filter(|word| !word.is_empty()).collect();
-        Offer::numbered(number, &words.join(" "), dims)
+        words.join(" ")
     }
 }
 

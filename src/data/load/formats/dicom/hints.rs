@@ -1,7 +1,10 @@
 //! What a header says of the values.
 
-use super::groups::Slice;
+use super::header::Header;
 use super::header::found::Found;
+use super::header::segments::{SegmentationType, labels};
+use super::layer::Slice;
+use super::mosaic::is_mosaic;
 use super::pixels::shape::{Colors, PixelNumber, Shape};
 use crate::data::{Hints, Meaning, Modality};
 
@@ -41,7 +44,15 @@ impl Found {
 }
 
 /// What a header says of the values of slices, which have a common slope and intercept or none.
-pub(super) fn hints(found: &Found, shape: &Shape, slice: &Slice, scale: Option<[f64; 2]>) -> Hints {
+///
+/// `has_masks` says that they are masks of segments, of which labels were made.
+pub(super) fn hints(
+    found: &Found,
+    shape: &Shape,
+    slice: &Slice,
+    scale: Option<[f64; 2]>,
+    has_masks: bool,
+) -> Hints {
     let mut hints = Hints::default();
     hints.modality = Modality::of_code(&found.modality);
     hints.set_acquisition(&found.acquisition());
@@ -54,16 +65,39 @@ pub(super) fn hints(found: &Found, shape: &Shape, slice: &Slice, scale: Option<[
         let low = center - 0.5 - (width - 1.0) / 2.0;
         hints.set_window(low, low + width - 1.0);
     }
-    if let (Some(padding), Some([slope, intercept]), PixelNumber::Integer(bits)) =
-        (found.padding, scale, shape.number)
+    if let (Some(padding), Some([slope, intercept]), false) = (stored_padding(found, shape), scale, has_masks)
     {
-        let padding = if bits.is_signed { f64::from(padding as i16) } else { f64::from(padding) };
         hints.set_padding(padding * slope + intercept);
     }
-    if hints.modality == Modality::Segmentation {
+    let is_field = found.segmentation == Some(SegmentationType::Fractional) && !has_masks;
+    if hints.modality == Modality::Segmentation && !is_field {
         hints.meaning = Meaning::Labels;
+        hints.labels = labels(&found.segments);
     }
     hints
+}
+
+/// The value of pixels that were not measured, as it is stored.
+pub(super) fn stored_padding(found: &Found, shape: &Shape) -> Option<f64> {
+    let PixelNumber::Integer(bits) = shape.number else { return None };
+    let padding = found.padding?;
+    Some(if bits.is_signed { f64::from(padding as i16) } else { f64::from(padding) })
+}
+
+/// The segment that is shown where several are, in words.
+pub(super) fn shown_of_overlapping(found: &Found) -> &'static str {
+    match found.segmentation {
+        Some(SegmentationType::Fractional) => "the largest share",
+        _ => "the highest number",
+    }
+}
+
+/// The value of a mask where all is of its segment.
+pub(super) fn most_fraction(found: &Found) -> f64 {
+    match found.segmentation {
+        Some(SegmentationType::Fractional) => f64::from(found.most_fraction.unwrap_or(255)),
+        _ => 1.0,
+    }
 }
 
 fn width_is_usable(slice: &Slice) -> bool {
@@ -71,7 +105,13 @@ fn width_is_usable(slice: &Slice) -> bool {
 }
 
 /// What users should know of how values are shown.
-pub(super) fn remarks(found: &Found, shape: &Shape, is_component_chosen: bool) -> Vec<String> {
+pub(super) fn remarks(
+    header: &Header,
+    shape: &Shape,
+    is_component_chosen: bool,
+    is_unpacked: bool,
+) -> Vec<String> {
+    let found = &header.found;
     let mut remarks = Vec::new();
     match shape.colors {
         Colors::Inverted => remarks.push("high values are meant to be shown dark; they are kept as they are"),
@@ -86,8 +126,11 @@ pub(super) fn remarks(found: &Found, shape: &Shape, is_component_chosen: bool) -
     if found.has_value_table {
         remarks.push("a table of what values mean is not applied: they are shown as they are stored");
     }
-    if found.image_type.contains("MOSAIC") {
-        remarks.push("its slices lie side by side in one picture (a mosaic): `dcm2niix` takes them apart");
+    if is_mosaic(header) && !is_unpacked {
+        remarks.push(
+            "its slices lie side by side in one picture (a mosaic), and it does not say how many: `dcm2niix` may \
+             take them apart",
+        );
     }
     remarks.into_iter().map(str::to_owned).collect()
 }

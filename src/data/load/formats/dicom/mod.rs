@@ -7,24 +7,32 @@
 mod groups;
 mod header;
 mod hints;
+mod layer;
+mod layers;
+mod mosaic;
+mod object_class;
+mod open_series;
 mod pixels;
 mod scan;
+mod series;
 mod stack;
 #[cfg(test)]
 mod tests;
 mod voxels;
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use super::input::{Input, stem};
+use super::input::Input;
 use super::reader::{Reader, Source, Start};
 use super::{LoadControl, LoadError, LoadOptions};
-use crate::data::attempt::{Attempt, Dimension, Offer, quoted};
-use crate::data::{Volume, plain};
-use groups::{Group, groups, left_out, shape_of};
+use crate::data::attempt::Attempt;
+use crate::data::{Volume, natural};
+use groups::{groups, left_out};
 use header::{Header, is_dicom};
+use object_class::ObjectClass;
+use open_series::OpenSeries;
 use scan::{Scan, beside, scan};
-use stack::Stack;
 
 /// What is being done, for messages.
 const WHAT: &str = "read the DICOM file";
@@ -64,45 +72,36 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
         return Err(without_pixels(attempt, &header));
     }
     let is_slice = header.frame_count() == 1 && !header.found.series.is_empty();
-    let (mut headers, mut unreadable) = (vec![header], None);
-    if is_slice {
-        let Scan { headers: others, broken, why, .. } = scan(&beside(path), control)?;
-        unreadable = why.map(|why| left_out(broken, &why));
-        let series = headers[0].found.series.clone();
-        let is_another = |other: &Header| other.found.series == series && other.frame_count() == 1;
-        headers.extend(others.into_iter().filter(is_another));
+    if !is_slice {
+        let headers = [header];
+        let grouping = groups(&headers);
+        let open = OpenSeries { attempt, path, headers: &headers, main: None, options, control };
+        return open.load(grouping, Vec::new());
     }
+    let Scan { headers: others, broken, why, .. } = scan(&beside(path), control)?;
+    let found = &header.found;
+    let is_another = |other: &Header| other.found.series == found.series && other.frame_count() == 1;
+    let others: Vec<Header> = others.into_iter().filter(is_another).collect();
+    let mut headers = vec![header];
+    headers.extend(others);
     let mut remarks = drop_copies(&mut headers);
-    remarks.extend(unreadable);
-    let (mut found, wrong) = groups(&headers)?;
-    let of_file = |group: &Group| group.slices.iter().any(|slice| slice.file == 0);
-    if is_slice {
-        // The file itself says what is meant.
-        let all: usize = found.iter().map(|group| group.slices.len()).sum();
-        found.retain(of_file);
-        let count: usize = found.iter().map(|group| group.slices.len()).sum();
-        if count > 1 {
-            remarks.push(format!("the {count} slices of its series in the same folder are shown with it"));
-        }
-        if all > count {
-            remarks.push(format!("{} pictures of the series have another size or direction", all - count));
-        }
+    // Where nothing else says an order, that of the names counts.
+    headers.sort_by_cached_key(|header| natural(&name_of(&header.path)));
+    let main = headers.iter().position(|header| header.path == path);
+    remarks.extend(why.map(|why| left_out(broken, headers.len() + broken, "files", &why)));
+    let mut grouping = groups(&headers);
+    if let Some(wrong) = grouping.unreadable.iter().position(|unreadable| Some(unreadable.file) == main) {
+        // Others of its series may be well, it is not.
+        return Err(grouping.unreadable.swap_remove(wrong).why);
     }
-    remarks.extend(wrong);
-    if found.is_empty() {
-        // Others of its series are well, it is not.
-        return Err(shape_of(&headers[0]).err().unwrap_or_else(|| without_pixels(attempt, &headers[0])));
-    }
-    let chosen = if is_slice { 0 } else { choose(attempt, &found, &headers, options)? };
-    let group = found.swap_remove(chosen);
-    let name = if group.slices.len() > 1 { name(&headers, &group, path) } else { stem(path) };
-    volume(attempt, name, &headers, group, remarks, options, control)
+    OpenSeries { attempt, path, headers: &headers, main, options, control }.load(grouping, remarks)
 }
 
-/// Loads the series in a folder's files; `None` where none is a DICOM file.
+/// Loads the series in a folder's files; `None` where none is a DICOM file. `remarks` are what is known of the files.
 pub(super) fn load_folder(
     path: &Path,
     files: &[PathBuf],
+    mut remarks: Vec<String>,
     options: &LoadOptions,
     control: &LoadControl,
 ) -> Result<Option<Volume>, LoadError> {
@@ -111,22 +110,25 @@ pub(super) fn load_folder(
     if headers.is_empty() {
         return match why {
             Some(why) => Err(why),
-            None if without_pixels > 0 => Err(attempt.bad_input(
-                "files",
-                format!("its {without_pixels} DICOM files have no pixels"),
-                "name the folder that holds the pictures",
-            )),
+            None if !without_pixels.is_empty() => Err(no_pixels_in_folder(attempt, without_pixels)),
             None => Ok(None),
         };
     }
-    let mut remarks = drop_copies(&mut headers);
-    remarks.extend(why.map(|why| left_out(broken, &why)));
-    let (mut found, wrong) = groups(&headers)?;
-    remarks.extend(wrong);
-    let chosen = choose(attempt, &found, &headers, options)?;
-    let group = found.swap_remove(chosen);
-    let name = name(&headers, &group, path);
-    volume(attempt, name, &headers, group, remarks, options, control).map(Some)
+    remarks.extend(drop_copies(&mut headers));
+    remarks.extend(why.map(|why| left_out(broken, headers.len() + broken, "files", &why)));
+    let grouping = groups(&headers);
+    let open = OpenSeries { attempt, path, headers: &headers, main: None, options, control };
+    open.load(grouping, remarks).map(Some)
+}
+
+/// How many of the files are DICOM files with pixels.
+pub(super) fn count_pictures(files: &[PathBuf], control: &LoadControl) -> Result<usize, LoadError> {
+    scan(files, control).map(|scan| scan.headers.len())
+}
+
+/// The name of a file.
+fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// Why there is nothing to see in a file without pixels.
@@ -136,24 +138,40 @@ fn without_pixels(attempt: Attempt<'_>, header: &Header) -> LoadError {
         return attempt.bad_input(
             "Directory Record Sequence",
             "it lists the files of a disk, and has no pictures itself",
-            "open one of the files, or the folder that holds those of a series",
+            "open the folder that it lies in: folders within are looked through",
         );
     }
-    let kind = match (found.modality.as_str(), found.sop_class.as_str()) {
-        ("", "") => "it says nothing of what it is".to_owned(),
-        ("", class) => format!("it is of class {}", quoted(class)),
-        (modality, _) => format!("its modality is {}", quoted(modality)),
-    };
+    match ObjectClass::from_uid(&found.sop_class) {
+        Some(ObjectClass { name, help }) => attempt.bad_input(
+            "SOP Class UID",
+            format!("it has no pixels: it is a DICOM object of its own, {name}"),
+            help,
+        ),
+        None => attempt.bad_input(
+            "Pixel Data",
+            format!("it has no pixels, as reports and plans have none: {}", header.kind()),
+            "open a file with pictures; if this one should have some, copy it again",
+        ),
+    }
+}
+
+/// Why there is nothing to see in a folder whose DICOM files have no pixels: so many of each kind.
+fn no_pixels_in_folder(attempt: Attempt<'_>, kinds: BTreeMap<String, usize>) -> LoadError {
+    // As many as a line has room for.
+    const MOST_KINDS: usize = 6;
+    let count: usize = kinds.values().sum();
+    let listed = kinds.into_iter().take(MOST_KINDS).map(|(kind, count)| format!("{count} {kind}"));
+    let kinds = listed.collect::<Vec<_>>().join(", ");
     attempt.bad_input(
-        "Pixel Data",
-        format!("it has no pixels, as reports and plans have none: {kind}"),
-        "open a file with pictures; if this one should have some, copy it again",
+        "files",
+        format!("its {count} DICOM files have no pixels: {kinds}"),
+        "name the folder that holds the pictures",
     )
 }
 
 /// Leaves out files that are copies of others.
 fn drop_copies(headers: &mut Vec<Header>) -> Vec<String> {
-    let mut seen = std::collections::BTreeSet::new();
+    let mut seen = BTreeSet::new();
     let before = headers.len();
     headers.retain(|header| {
         let instance = &header.found.sop_instance;
@@ -162,44 +180,4 @@ fn drop_copies(headers: &mut Vec<Header>) -> Vec<String> {
     let copies = before - headers.len();
     let remark = (copies > 0).then(|| format!("{copies} files are copies of others: they are left out"));
     remark.into_iter().collect()
-}
-
-/// Which group is meant.
-fn choose(
-    attempt: Attempt<'_>,
-    found: &[Group],
-    headers: &[Header],
-    options: &LoadOptions,
-) -> Result<usize, LoadError> {
-    let offers = found.iter().enumerate().map(|(number, group)| group.offer(number, headers)).collect();
-    attempt.chosen(&options.choice, Dimension::Series, offers)
-}
-
-/// What a series is called, or else what its file or folder is.
-fn name(headers: &[Header], group: &Group, path: &Path) -> String {
-    let first = group.slices.first().map(|slice| headers[slice.file].found.description());
-    let said = first.filter(|description| !description.is_empty());
-    said.map_or_else(|| stem(path), |description| plain(description, 120))
-}
-
-/// The volume of a group.
-fn volume(
-    attempt: Attempt<'_>,
-    name: String,
-    headers: &[Header],
-    group: Group,
-    remarks: Vec<String>,
-    options: &LoadOptions,
-    control: &LoadControl,
-) -> Result<Volume, LoadError> {
-    let Group { shape, slices } = group;
-    let mut stack = Stack::of(slices);
-    let dims = |count: usize| [shape.columns as u64, shape.rows as u64, count as u64];
-    let steps = stack.steps.iter().enumerate();
-    let offers =
-        steps.map(|(step, (name, slices))| Offer::numbered(step, name, dims(slices.len()))).collect();
-    let step = attempt.chosen(&options.choice, Dimension::Frame, offers)?;
-    let (_, slices) = stack.steps.swap_remove(step);
-    stack.placement.remarks.splice(0..0, remarks);
-    voxels::load(attempt, name, headers, shape, &slices, stack.placement, options, control)
 }

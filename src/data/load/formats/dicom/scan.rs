@@ -1,5 +1,6 @@
 //! The headers of many files, read on all cores; pixels are left alone.
 
+use std::collections::BTreeMap;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
@@ -21,8 +22,8 @@ const START_BYTES: u64 = 1024;
 pub(super) struct Scan {
     /// Of those with pixels, in the files' order.
     pub(super) headers: Vec<Header>,
-    /// DICOM files without pixels.
-    pub(super) without_pixels: usize,
+    /// DICOM files without pixels: how many of each kind.
+    pub(super) without_pixels: BTreeMap<String, usize>,
     /// DICOM files that cannot be read.
     pub(super) broken: usize,
     /// Why the first of them cannot be.
@@ -31,7 +32,8 @@ pub(super) struct Scan {
 
 enum Seen {
     Header(Box<Header>),
-    WithoutPixels,
+    /// Of this kind.
+    WithoutPixels(String),
     Broken(LoadError),
     Other,
 }
@@ -48,7 +50,7 @@ pub(super) fn scan(files: &[PathBuf], control: &LoadControl) -> Result<Scan, Loa
     for seen in seen? {
         match seen {
             Seen::Header(header) => scan.headers.push(*header),
-            Seen::WithoutPixels => scan.without_pixels += 1,
+            Seen::WithoutPixels(kind) => *scan.without_pixels.entry(kind).or_default() += 1,
             Seen::Broken(why) => {
                 scan.broken += 1;
                 scan.why = scan.why.or(Some(why));
@@ -73,7 +75,7 @@ fn look(path: &Path, control: &LoadControl) -> Result<Seen, LoadError> {
     }
     let seen = match Header::of(attempt, input, &start, control) {
         Ok((header, _)) if header.pixels.is_some() => Seen::Header(Box::new(header)),
-        Ok(_) => Seen::WithoutPixels,
+        Ok((header, _)) => Seen::WithoutPixels(header.kind()),
         Err(LoadError::Cancelled) => return Err(LoadError::Cancelled),
         Err(error) => Seen::Broken(error),
     };

@@ -1,70 +1,78 @@
-//! The voxels of slices: each is read, unpacked and rescaled on a core of its own.
+//! The voxels of layers: each is read, unpacked and rescaled on a core of its own.
+
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
 use super::super::number::Part;
-use super::super::placement::{Parts, Placement};
+use super::super::placement::Parts;
 use super::super::rescaled::rescaled;
-use super::super::samples::reserve;
 use super::super::voxels::{Meant, NoMeans, Voxels, averaged};
 use super::super::{Endian, LoadControl, LoadError, LoadOptions};
-use super::groups::Slice;
+use super::groups::shape_of;
 use super::header::Header;
+use super::hints;
+use super::layer::{Filling, Layer, Slice};
+use super::layers::{Fault, Scratch, Source, no_memory, reserved};
 use super::pixels::raster::{Raster, Voxel};
 use super::pixels::shape::Shape;
 use super::pixels::store::Store;
-use super::{WHAT, hints};
+use super::stack::StackedVolume;
 use crate::data::attempt::{Attempt, Extent, Kept};
 use crate::data::{Samples, Volume, VoxelType};
 
-/// Slices, and how their pixels become voxels.
-struct Slices<'a> {
-    headers: &'a [Header],
-    /// Of the files that have slices among these.
-    stores: &'a [Option<Store>],
-    order: &'a [Slice],
-    raster: Raster,
-    /// Each slice has a slope and an intercept of its own.
-    is_scaled: bool,
-    control: &'a LoadControl,
+/// A volume of files that is meant.
+pub(super) struct VolumeRequest<'a> {
+    pub(super) name: String,
+    pub(super) headers: &'a [Header],
+    pub(super) shape: Shape,
+    pub(super) filling: Filling,
+    pub(super) has_masks: bool,
+    pub(super) volume: StackedVolume,
 }
 
-/// The volume of slices in order.
-#[expect(clippy::too_many_arguments, reason = "all that was found out of a volume, once")]
+/// Reads a volume.
+///
+/// # Errors
+/// [`Fault::Unreadable`] names the pictures that cannot be read, where others can.
 pub(super) fn load(
     attempt: Attempt<'_>,
-    name: String,
-    headers: &[Header],
-    shape: Shape,
-    slices: &[Slice],
-    mut placement: Placement,
+    request: &VolumeRequest<'_>,
     options: &LoadOptions,
     control: &LoadControl,
-) -> Result<Volume, LoadError> {
+) -> Result<Volume, Fault> {
+    let VolumeRequest { shape, volume, .. } = request;
+    let headers = request.headers;
+    let StackedVolume { slices, layers, placement, .. } = volume;
     let component = options.choice.component_among(shape.samples, shape.samples > 1);
     let part = Part::asked(attempt, component, shape.samples, shape.samples > 1)?;
     let Some(first) = slices.first() else {
-        return Err(attempt.bad_input(
-            "Number of Frames",
-            "it has no frames",
-            "copy or export the file again",
-        ));
+        let why = attempt.bad_input("Number of Frames", "it has no frames", "copy or export the file again");
+        return Err(why.into());
     };
-    let scale = first.plane.scale();
-    // What colours are called is not rescaled.
-    let is_scaled = shape.samples == 1 && slices.iter().any(|slice| slice.plane.scale() != scale);
-    let voxel_type = match shape.voxel_type() {
-        VoxelType::U32 | VoxelType::I32 | VoxelType::F64 if is_scaled => VoxelType::F64,
-        _ if is_scaled => VoxelType::F32,
-        stored => stored,
-    };
-    let dims = [shape.columns as u64, shape.rows as u64, slices.len() as u64];
+    let scale = if request.has_masks { [1.0, 0.0] } else { first.plane.scale() };
+    // What colours and segments are called is not rescaled.
+    let is_scaled =
+        shape.samples == 1 && !request.has_masks && slices.iter().any(|slice| slice.plane.scale() != scale);
+    let voxel_type = request.voxel_type(is_scaled);
+    let dims = [shape.columns as u64, shape.rows as u64, layers.len() as u64];
     let extent = Extent::checked(attempt, "Rows, Columns", dims, voxel_type, options.room(control))?;
-    let stores = stores(headers, shape, extent.read.slices().map(|slice| slices[slice]), options, control)?;
-    let raster = Raster { shape, endian: Endian::Little, part, scale: None };
-    let slices_of = Slices { headers, stores: &stores, order: slices, raster, is_scaled, control };
+    let is_read = extent.read.slices().flat_map(|layer| layers[layer].pictures()).map(|at| &slices[at]);
+    let stores = stores(headers, is_read, options, control)?;
     let found = &headers[first.file].found;
-    let hints = hints::hints(found, &shape, first, (!is_scaled).then_some(scale));
+    let hints = hints::hints(found, shape, first, (!is_scaled).then_some(scale), request.has_masks);
+    let source = Source {
+        headers,
+        stores: &stores,
+        slices,
+        filling: request.filling,
+        raster: Raster { shape: *shape, endian: Endian::Little, part, scale: None },
+        is_scaled,
+        padding: hints::stored_padding(found, shape).filter(|_| !is_scaled),
+        most_fraction: hints::most_fraction(found),
+        overlapping: AtomicU64::new(0),
+        control,
+    };
     let values = |samples| {
         if is_scaled || shape.samples > 1 {
             Ok(samples)
@@ -73,16 +81,50 @@ pub(super) fn load(
         }
     };
     let meant = Meant { padding: hints.padding, values: &values };
-    let voxels = slices_of.read(attempt, &extent.read, voxel_type, &meant)?;
-    placement.remarks.extend(hints::remarks(found, &shape, options.choice.component.is_some()));
-    Parts { name, extent, placement, voxels, hints }.volume(attempt)
+    let layers = Layers { source: &source, layers, shape: *shape };
+    let voxels = layers.read(attempt, &extent.read, voxel_type, &meant);
+    let voxels = voxels.map_err(|fault| layers.looked_into(&extent.read, fault))?;
+    let mut placement = placement.clone();
+    let is_unpacked = first.tile.is_some();
+    placement.remarks.extend(hints::remarks(
+        &headers[first.file],
+        shape,
+        options.choice.component.is_some(),
+        is_unpacked,
+    ));
+    let overlapping = source.overlapping.load(Ordering::Relaxed);
+    if overlapping > 0 {
+        placement.remarks.push(format!(
+            "segments overlap in {overlapping} voxels: of those that lie there {} is shown",
+            hints::shown_of_overlapping(found)
+        ));
+    }
+    let parts = Parts { name: request.name.clone(), extent, placement, voxels, hints };
+    parts.volume(attempt).map_err(Fault::from)
+}
+
+impl VolumeRequest<'_> {
+    /// The type of the voxels before they are rescaled.
+    fn voxel_type(&self, is_scaled: bool) -> VoxelType {
+        let StackedVolume { slices, layers, .. } = &self.volume;
+        if self.has_masks {
+            let highest = slices.iter().filter_map(|slice| slice.plane.segment).max().unwrap_or(1);
+            return if highest <= u16::from(u8::MAX) { VoxelType::U8 } else { VoxelType::U16 };
+        }
+        // Only real numbers have one that is none.
+        let has_nothing = self.filling == Filling::Means && layers.contains(&Layer::Empty);
+        match self.shape.voxel_type() {
+            VoxelType::U32 | VoxelType::I32 | VoxelType::F64 if is_scaled || has_nothing => VoxelType::F64,
+            _ if is_scaled || has_nothing => VoxelType::F32,
+            stored => stored,
+        }
+    }
 }
 
 /// Finds the pixels of all files that have some of the slices.
-fn stores(
+fn stores<'a>(
     headers: &[Header],
-    shape: Shape,
-    slices: impl Iterator<Item = Slice>,
+    slices: impl Iterator<Item = &'a Slice>,
     options: &LoadOptions,
     control: &LoadControl,
 ) -> Result<Vec<Option<Store>>, LoadError> {
@@ -92,12 +134,20 @@ fn stores(
     }
     let found = headers.par_iter().zip(is_used).map(|(header, is_used)| {
         control.check()?;
-        is_used.then(|| Store::of(header, shape, options.memory_budget_bytes, control)).transpose()
+        let store = || Store::of(header, shape_of(header)?, options.memory_budget_bytes, control);
+        is_used.then(store).transpose()
     });
     found.collect()
 }
 
-impl Slices<'_> {
+/// The layers of a volume, and what they are made of.
+struct Layers<'a> {
+    source: &'a Source<'a>,
+    layers: &'a [Layer],
+    shape: Shape,
+}
+
+impl Layers<'_> {
     /// Reads what is kept.
     fn read(
         &self,
@@ -105,34 +155,30 @@ impl Slices<'_> {
         kept: &Kept,
         voxel_type: VoxelType,
         meant: &Meant<'_>,
-    ) -> Result<Voxels, LoadError> {
+    ) -> Result<Voxels, Fault> {
         let boxed = kept.boxed_if_averaged();
         // The first picture, before there is room for all: one that is not what its header says asks for none.
         let first = kept.low[2];
         let one = Kept { low: [0, 0, first], high: [1, 1, first + 1], ..Kept::all(kept.grid) };
         self.stretch(attempt, &one, voxel_type)?;
-        self.control.start(Extent::sized(boxed.dims(), voxel_type).bytes);
+        self.source.overlapping.store(0, Ordering::Relaxed);
+        self.source.control.start(Extent::sized(boxed.dims(), voxel_type).bytes);
         if !kept.is_averaged {
             return Ok((meant.values)(self.stretch(attempt, &boxed, voxel_type)?)?.into());
         }
-        averaged(kept, voxel_type.bytes(), meant, self.control, |slices| {
+        averaged(kept, voxel_type.bytes(), meant, self.source.control, |slices| {
             let (mut low, mut high) = (boxed.low, boxed.high);
             (low[2], high[2]) = (boxed.low[2] + slices.start, boxed.low[2] + slices.end);
             self.stretch(attempt, &Kept { low, high, ..boxed }, voxel_type)
         })
         .map_err(|why| match why {
-            NoMeans::Unread(error) => error,
-            NoMeans::NoMemory => no_memory(attempt, kept.count()),
+            NoMeans::Unread(fault) => fault,
+            NoMeans::NoMemory => no_memory(attempt, kept.count()).into(),
         })
     }
 
     /// Reads voxels that are not averaged.
-    fn stretch(
-        &self,
-        attempt: Attempt<'_>,
-        kept: &Kept,
-        voxel_type: VoxelType,
-    ) -> Result<Samples, LoadError> {
+    fn stretch(&self, attempt: Attempt<'_>, kept: &Kept, voxel_type: VoxelType) -> Result<Samples, Fault> {
         match voxel_type {
             VoxelType::U8 => self.voxels(attempt, kept).map(Samples::U8),
             VoxelType::I8 => self.voxels(attempt, kept).map(Samples::I8),
@@ -145,43 +191,50 @@ impl Slices<'_> {
         }
     }
 
-    fn voxels<T: Voxel>(&self, attempt: Attempt<'_>, kept: &Kept) -> Result<Vec<T>, LoadError> {
+    fn voxels<T: Voxel>(&self, attempt: Attempt<'_>, kept: &Kept) -> Result<Vec<T>, Fault> {
         let [width, height, _] = kept.dims();
         let mut voxels: Vec<T> = reserved(attempt, kept.count())?;
         voxels.resize(kept.count(), T::default());
-        let slices: Vec<&Slice> = kept.slices().map(|slice| &self.order[slice]).collect();
+        let layers: Vec<&Layer> = kept.slices().map(|layer| &self.layers[layer]).collect();
         let is_whole = [width, height] == [kept.grid[0], kept.grid[1]];
-        let chunks = voxels.par_chunks_mut(width * height).zip(slices.par_iter());
-        chunks.try_for_each_init(Vec::new, |whole: &mut Vec<T>, (voxels, slice)| {
-            self.control.check()?;
+        let chunks = voxels.par_chunks_mut(width * height).zip(layers.par_iter());
+        chunks.try_for_each_init(Scratch::default, |scratch: &mut Scratch<T>, (voxels, layer)| {
+            self.source.control.check()?;
             if is_whole {
-                self.slice(slice, voxels)?;
+                self.source.layer(attempt, layer, voxels, scratch)?;
             } else {
-                if whole.is_empty() {
-                    *whole = reserved(attempt, self.raster.shape.pixels())?;
-                    whole.resize(self.raster.shape.pixels(), T::default());
-                }
-                self.slice(slice, whole)?;
-                kept.pick_in_slice(whole, voxels);
+                let mut whole = scratch.taken_whole(attempt, self.shape.pixels())?;
+                self.source.layer(attempt, layer, &mut whole, scratch)?;
+                kept.pick_in_slice(&whole, voxels);
+                scratch.give_back(whole);
             }
-            self.control.advance(size_of_val(voxels) as u64);
-            Ok::<(), LoadError>(())
+            self.source.control.advance(size_of_val(voxels) as u64);
+            Ok::<(), Fault>(())
         })?;
         Ok(voxels)
     }
 
-    fn slice<T: Voxel>(&self, slice: &Slice, voxels: &mut [T]) -> Result<(), LoadError> {
-        let attempt = Attempt { what: WHAT, path: &self.headers[slice.file].path };
-        let Some(store) = &self.stores[slice.file] else { return Ok(()) };
-        let scale = self.is_scaled.then(|| slice.plane.scale());
-        store.read(attempt, slice.frame, Raster { scale, ..self.raster }, voxels, self.control)
+    /// Where a picture could not be read: all that cannot be, so that the others can be shown without them.
+    fn looked_into(&self, kept: &Kept, fault: Fault) -> Fault {
+        let Fault::Unreadable { why, .. } = fault else { return fault };
+        let mut pictures: Vec<usize> =
+            kept.slices().flat_map(|layer| self.layers[layer].pictures()).collect();
+        pictures.sort_unstable();
+        pictures.dedup();
+        let total = pictures.len();
+        let looked = pictures.into_par_iter().map_init(Vec::new, |voxels: &mut Vec<f32>, picture| {
+            self.source.control.check()?;
+            let slice = &self.source.slices[picture];
+            voxels.resize(self.shape.pixels(), 0.0);
+            match self.source.picture(slice, voxels, &mut Vec::new()) {
+                Ok(()) => Ok(None),
+                Err(Fault::Unreadable { .. }) => Ok(Some(picture)),
+                Err(Fault::Load(error)) => Err(error),
+            }
+        });
+        match looked.collect::<Result<Vec<Option<usize>>, LoadError>>() {
+            Ok(found) => Fault::Unreadable { pictures: found.into_iter().flatten().collect(), total, why },
+            Err(error) => Fault::Load(error),
+        }
     }
-}
-
-fn reserved<T>(attempt: Attempt<'_>, count: usize) -> Result<Vec<T>, LoadError> {
-    reserve(count).map_err(|_no_memory| no_memory(attempt, count))
-}
-
-fn no_memory(attempt: Attempt<'_>, count: usize) -> LoadError {
-    attempt.limit("data", format!("the memory for {count} voxels is not there"), "close other programs")
 }

@@ -2,62 +2,21 @@
 
 use glam::DVec3;
 
+use super::csa;
+use super::place::{MOST_FRAMES, Place};
 use super::plane::Plane;
+use super::plane_elements::take_plane;
+use super::segments::{MOST_SEGMENTS, Segment, SegmentationType};
 use super::tags::{self, Tag};
+use super::taken::Attribute;
 use super::value::Value;
 use crate::data::load::Endian;
 
-/// Most frames of a file that are told apart.
-pub(in crate::data::load::formats::dicom) const MOST_FRAMES: usize = 1 << 18;
+/// Most texts of image types that are told apart in a file.
+const MOST_FRAME_TYPES: usize = 256;
 
-/// Where in a data set an element lies, as far as that matters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::data::load::formats::dicom) enum Place {
-    Top,
-    /// What is said of all frames.
-    Shared,
-    /// What is said of a frame.
-    Frame(usize),
-    /// A detector of nuclear medicine, which says where the pictures lie.
-    Detector,
-    /// Where nothing is wanted.
-    Elsewhere,
-}
-
-impl Place {
-    /// The place inside a sequence; `None` where nothing in it is wanted.
-    pub(in crate::data::load::formats::dicom) fn inside(self, sequence: Tag) -> Option<Self> {
-        match (self, sequence) {
-            (Self::Top, tags::SHARED_GROUPS) => Some(Self::Shared),
-            (Self::Top, tags::FRAME_GROUPS) => Some(Self::Frame(0)),
-            (Self::Top, tags::DETECTORS) => Some(Self::Detector),
-            (
-                Self::Shared | Self::Frame(_),
-                tags::PLANE_POSITION
-                | tags::PLANE_ORIENTATION
-                | tags::PIXEL_MEASURES
-                | tags::VALUE_TRANSFORMATION
-                | tags::FRAME_WINDOW
-                | tags::FRAME_CONTENT
-                | tags::CARDIAC
-                | tags::ECHO
-                | tags::DIFFUSION,
-            ) => Some(self),
-            _ => None,
-        }
-    }
-
-    /// The place inside an item of a sequence that this is the place inside of.
-    pub(in crate::data::load::formats::dicom) fn item(self, sequence: Tag, number: usize) -> Self {
-        match (self, sequence) {
-            (Self::Frame(_), tags::FRAME_GROUPS) if number >= MOST_FRAMES => Self::Elsewhere,
-            (Self::Frame(_), tags::FRAME_GROUPS) => Self::Frame(number),
-            // Several detectors: the first counts.
-            (Self::Detector, tags::DETECTORS) if number > 0 => Self::Elsewhere,
-            _ => self,
-        }
-    }
-}
+/// The creator of Siemens' private elements of a picture.
+const SIEMENS: &str = "SIEMENS MR HEADER";
 
 /// What is kept of a header.
 #[derive(Debug, Clone, Default)]
@@ -92,9 +51,44 @@ pub(in crate::data::load::formats::dicom) struct Found {
     pub(in crate::data::load::formats::dicom) frame_starts: Vec<u64>,
     /// How far from the first frames lie, across.
     pub(in crate::data::load::formats::dicom) frame_offsets: Vec<f64>,
+    /// Slice Location Vector: where frames lie along a line, millimetres.
+    pub(crate) frame_locations_mm: Vec<f64>,
+    /// Frames follow each other in time, as the element says that they are counted by.
+    pub(crate) is_film: bool,
+    /// How many slices lie side by side in a picture, as Siemens scanners write them.
+    pub(crate) mosaic_count: Option<f64>,
+    /// Across those slices, from the first to the last; left-posterior-superior.
+    pub(crate) mosaic_normal: Option<DVec3>,
+    pub(crate) segmentation: Option<SegmentationType>,
+    pub(crate) segments: Vec<Segment>,
+    /// The value of a pixel that is all of a segment.
+    pub(crate) most_fraction: Option<u16>,
+    /// Frame types other than the file's image type.
+    pub(crate) frame_types: Vec<String>,
+    /// Whether Siemens' private elements mean what they mean.
+    has_siemens_header: bool,
+    /// Units (3 is centimetres) and distances between columns and rows in a region of ultrasound.
+    region: Region,
     pub(in crate::data::load::formats::dicom) all: Plane,
     pub(in crate::data::load::formats::dicom) shared: Plane,
     pub(in crate::data::load::formats::dicom) frames: Vec<Plane>,
+}
+
+/// How far pixels of a region of a picture of ultrasound lie apart (PS3.3 section C.8.5.5).
+#[derive(Debug, Clone, Copy, Default)]
+struct Region {
+    units: [Option<u16>; 2],
+    delta: [Option<f64>; 2],
+}
+
+impl Region {
+    /// Between rows and between columns, millimetres; `None` where pixels measure something else.
+    fn spacing_mm(&self) -> Option<[f64; 2]> {
+        /// Physical Units X Direction: centimetres.
+        const CENTIMETRES: Option<u16> = Some(3);
+        let [Some(x), Some(y)] = self.delta else { return None };
+        (self.units == [CENTIMETRES; 2] && x != 0.0 && y != 0.0).then(|| [y.abs() * 10.0, x.abs() * 10.0])
+    }
 }
 
 impl Found {
@@ -103,10 +97,10 @@ impl Found {
         match place {
             Place::Elsewhere => false,
             Place::Top => {
-                matches!(tag >> 16, 0x0008 | 0x0018 | 0x0020 | 0x0028 | 0x0054 | 0x3004)
-                    || tag == tags::FRAME_STARTS
+                matches!(tag >> 16, 0x0008 | 0x0018 | 0x0019 | 0x0020 | 0x0028 | 0x0054 | 0x0062 | 0x3004)
+                    || matches!(tag, tags::FRAME_STARTS | tags::SIEMENS_HEADER)
             }
-            _ => matches!(tag >> 16, 0x0018 | 0x0020 | 0x0028),
+            _ => matches!(tag >> 16, 0x0008 | 0x0018 | 0x0020 | 0x0028 | 0x0062),
         }
     }
 
@@ -139,6 +133,14 @@ impl Found {
             }
             Place::Detector if matches!(tag, tags::POSITION | tags::ORIENTATION) => Some(&mut self.all),
             Place::Detector | Place::Elsewhere => None,
+            Place::Region => {
+                self.take_region(tag, value);
+                None
+            }
+            Place::Segment(number) => {
+                self.take_segment(number, tag, value);
+                None
+            }
             Place::Shared => Some(&mut self.shared),
             Place::Frame(number) => {
                 if number >= self.frames.len() && number < MOST_FRAMES {
@@ -147,8 +149,60 @@ impl Found {
                 self.frames.get_mut(number)
             }
         };
-        if let Some(plane) = plane {
+        let Some(plane) = plane else { return };
+        if tag == tags::FRAME_TYPE {
+            let text = value.text();
+            let known = self.frame_types.iter().position(|known| *known == text);
+            let at = known.unwrap_or(self.frame_types.len());
+            if known.is_none() && at < MOST_FRAME_TYPES {
+                self.frame_types.push(text);
+            }
+            plane.taken.set(Attribute::ImageType, Some(at as f64));
+        } else {
             take_plane(plane, tag, value);
+        }
+    }
+
+    fn take_region(&mut self, tag: Tag, value: Value<'_>) {
+        match tag {
+            tags::REGION_UNITS_X => self.region.units[0] = value.short(),
+            tags::REGION_UNITS_Y => self.region.units[1] = value.short(),
+            tags::REGION_DELTA_X => self.region.delta[0] = value.double(),
+            tags::REGION_DELTA_Y => self.region.delta[1] = value.double(),
+            _ => {}
+        }
+    }
+
+    fn take_segment(&mut self, number: usize, tag: Tag, value: Value<'_>) {
+        if number >= self.segments.len() && number < MOST_SEGMENTS {
+            self.segments.resize(number + 1, Segment::default());
+        }
+        let Some(segment) = self.segments.get_mut(number) else { return };
+        match tag {
+            tags::SEGMENT_NUMBER => segment.number = value.short(),
+            tags::SEGMENT_LABEL => segment.label = value.text(),
+            tags::SEGMENT_COLOR => segment.color = value.shorts_of(),
+            _ => {}
+        }
+    }
+
+    /// What Siemens scanners say of slices that lie side by side in one picture.
+    fn take_siemens(&mut self, tag: Tag, value: Value<'_>) {
+        match tag {
+            tags::SIEMENS_CREATOR => self.has_siemens_header = value.text() == SIEMENS,
+            tags::MOSAIC_COUNT if self.has_siemens_header => {
+                self.mosaic_count = value.short().map(f64::from);
+            }
+            tags::SIEMENS_B_VALUE if self.has_siemens_header => {
+                self.all.taken.set(Attribute::BValue, value.decimal());
+            }
+            tags::SIEMENS_HEADER => {
+                let count =
+                    csa::numbers(value.bytes, "NumberOfImagesInMosaic").map(|[count]: [f64; 1]| count);
+                self.mosaic_count = self.mosaic_count.or(count);
+                self.mosaic_normal = csa::numbers(value.bytes, "SliceNormalVector").map(DVec3::from_array);
+            }
+            _ => {}
         }
     }
 
@@ -177,8 +231,21 @@ impl Found {
             tags::DOSE_SCALING => self.all.slope = value.decimal(),
             tags::FRAME_OFFSETS => self.frame_offsets = value.decimals(MOST_FRAMES),
             tags::FRAME_STARTS => self.frame_starts = value.longs(MOST_FRAMES),
-            _ => {}
+            tags::SLICE_LOCATIONS => self.frame_locations_mm = value.decimals(MOST_FRAMES),
+            tags::FRAME_INCREMENT => {
+                self.is_film = matches!(value.tag(), Some(tags::FRAME_TIME | tags::FRAME_TIMES));
+            }
+            tags::SEGMENTATION_TYPE => self.segmentation = SegmentationType::parse(&value.text()),
+            tags::MOST_FRACTION => self.most_fraction = value.short(),
+            _ => self.take_siemens(tag, value),
         }
+    }
+
+    /// The image type of a frame, or else of the file.
+    pub(crate) fn image_type(&self, frame: usize) -> &str {
+        let own = self.frames.get(frame).and_then(|plane| plane.taken.get(Attribute::ImageType));
+        let said = own.or(self.shared.taken.get(Attribute::ImageType));
+        said.and_then(|at| self.frame_types.get(at as usize)).unwrap_or(&self.image_type)
     }
 
     /// What is said of a frame.
@@ -187,42 +254,17 @@ impl Found {
         let mut plane = of_frame.or(&self.shared).or(&self.all);
         plane.has_own_position =
             of_frame.position.is_some() || self.frame_count.is_none_or(|count| count <= 1.0);
+        plane.is_of_film = self.is_film;
+        plane.location_mm = self.frame_locations_mm.get(frame).copied().or(plane.location_mm);
+        if plane.spacing.is_none() {
+            plane.spacing = self.region.spacing_mm();
+            plane.spacing_source = plane.spacing.map(|_| "its calibrated region");
+        }
         if let (Some(position), Some(normal)) = (plane.position, plane.normal())
             && let (Some(offset), Some(first)) = (self.frame_offsets.get(frame), self.frame_offsets.first())
         {
             plane.position = Some(position + normal * (offset - first));
         }
         plane
-    }
-}
-
-/// Keeps what is said of a picture.
-fn take_plane(plane: &mut Plane, tag: Tag, value: Value<'_>) {
-    match tag {
-        tags::POSITION => plane.position = value.decimals_of().map(DVec3::from_array),
-        tags::ORIENTATION => {
-            let cosines: Option<[f64; 6]> = value.decimals_of();
-            plane.orientation = cosines.map(|[a, b, c, d, e, f]| [DVec3::new(a, b, c), DVec3::new(d, e, f)]);
-        }
-        tags::PIXEL_SPACING => plane.spacing = value.decimals_of().or(plane.spacing),
-        // At the detector, where the body is not: better than nothing.
-        tags::DETECTOR_SPACING => plane.spacing = plane.spacing.or_else(|| value.decimals_of()),
-        tags::SLICE_THICKNESS => plane.thickness = value.decimal(),
-        tags::SPACING_BETWEEN => plane.between = value.decimal(),
-        tags::SLOPE => plane.slope = value.decimal(),
-        tags::INTERCEPT => plane.intercept = value.decimal(),
-        tags::WINDOW_CENTER => plane.window[0] = value.decimal(),
-        tags::WINDOW_WIDTH => plane.window[1] = value.decimal(),
-        tags::TEMPORAL_POSITION => plane.taken.temporal_position = value.decimal(),
-        tags::TEMPORAL_POSITION_INDEX => plane.taken.temporal_position = value.long().map(f64::from),
-        tags::B_VALUE => plane.taken.b_value = value.double(),
-        tags::ECHO_TIME => plane.taken.echo_time_ms = value.decimal(),
-        tags::EFFECTIVE_ECHO_TIME => plane.taken.echo_time_ms = value.double(),
-        tags::TRIGGER_TIME => plane.taken.trigger_time_ms = value.decimal(),
-        tags::CARDIAC_DELAY => plane.taken.trigger_time_ms = value.double(),
-        tags::ACQUISITION_NUMBER => plane.taken.acquisition = value.decimal(),
-        tags::ACQUISITION_TIME => plane.taken.time_s = value.time_s(),
-        tags::INSTANCE_NUMBER => plane.taken.instance = value.decimal(),
-        _ => {}
     }
 }

@@ -1,23 +1,30 @@
 //! The header of a file: everything before its pixels.
 
 pub(super) mod bytes;
+pub(super) mod csa;
 pub(super) mod found;
+pub(super) mod place;
 pub(super) mod plane;
+mod plane_elements;
+pub(super) mod segments;
 pub(super) mod syntax;
 pub(super) mod tags;
+pub(super) mod taken;
 mod value;
 pub(super) mod walk;
 
+use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::data::attempt::Attempt;
+use super::object_class::ObjectClass;
+use crate::data::attempt::{Attempt, quoted};
 use crate::data::load::reading::input::Input;
 use crate::data::load::reading::reader::Start;
 use crate::data::load::{Endian, LoadControl, LoadError};
 use bytes::{Bytes, LONGEST_VALUE};
 use found::Found;
 use syntax::{Form, Syntax};
-use tags::TRANSFER_SYNTAX;
+use tags::{ITEM, TRANSFER_SYNTAX};
 use value::Value;
 use walk::{Broken, PixelElement, head, walk};
 
@@ -102,13 +109,58 @@ impl Header {
         }
         let mut found = Found::default();
         let pixels = walk(&mut bytes, syntax.form, &mut found, control).map_err(broken)?;
+        if let Some(pixels) = pixels
+            && !syntax.is_deflated
+        {
+            let start = if syntax.is_private() { first_fragment(&mut bytes, pixels) } else { Ok(Vec::new()) };
+            let start = start.map_err(|error| attempt.io(error))?;
+            syntax = syntax.looked_at(pixels.length, native_bytes(&found), &start);
+        }
         Ok((Self { path: attempt.path.to_owned(), len, syntax, found, pixels }, bytes))
+    }
+
+    /// What it is, where it has no pixels: the name of its class, or what it says of itself.
+    pub(super) fn kind(&self) -> String {
+        let found = &self.found;
+        let class = ObjectClass::from_uid(&found.sop_class);
+        match (class, found.modality.as_str(), found.sop_class.as_str()) {
+            _ if found.is_directory => "a list of files (DICOMDIR)".to_owned(),
+            (Some(class), ..) => class.name.to_owned(),
+            (None, "", "") => "it says nothing of what it is".to_owned(),
+            (None, "", class) => format!("of class {}", quoted(class)),
+            (None, modality, _) => format!("of modality {}", quoted(modality)),
+        }
     }
 
     /// How many frames it says that it has; at least one.
     pub(super) fn frame_count(&self) -> u64 {
         self.found.frame_count.map_or(1, |count| count.max(1.0) as u64)
     }
+}
+
+/// Bytes of a picture whose beginning says how it is compressed: more than what stands before the size of a JPEG.
+const FRAGMENT_START: usize = 4096;
+
+/// The beginning of the first compressed picture; nothing where pixels are not in fragments.
+fn first_fragment(bytes: &mut Bytes, pixels: PixelElement) -> io::Result<Vec<u8>> {
+    if pixels.length.is_some() {
+        return Ok(Vec::new());
+    }
+    // The first item is a table. What is cut off there is told later, with better words.
+    let (Some(ITEM), Ok(length)) = (bytes.tag(Endian::Little)?, bytes.u32(Endian::Little)) else {
+        return Ok(Vec::new());
+    };
+    if bytes.skip(u64::from(length)).is_err() || bytes.skip(8).is_err() {
+        return Ok(Vec::new());
+    }
+    bytes.peek::<FRAGMENT_START>()
+}
+
+/// Bytes that the pixels have without compression; `None` where the header does not say it.
+fn native_bytes(found: &Found) -> Option<u64> {
+    let factors = [found.rows?, found.columns?, found.samples.unwrap_or(1), found.bits_allocated?];
+    let bits = factors.into_iter().map(u64::from).product::<u64>();
+    Some((bits.checked_mul(found.frame_count.map_or(1, |count| count.max(1.0) as u64))?).div_ceil(8))
 }
 
 /// Reads the group that says how the rest is written; the identifier of the transfer syntax.

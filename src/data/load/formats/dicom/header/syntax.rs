@@ -42,12 +42,49 @@ pub(in crate::data::load::formats::dicom) enum Codec {
     Jpeg2000,
 }
 
+impl Codec {
+    /// How a picture is compressed that begins so, after the marks of the standards that each codec names.
+    fn of_picture(start: &[u8]) -> Option<Self> {
+        const JPEG_2000_FILE: &[u8] = &[0, 0, 0, 12, b'j', b'P', b' ', b' '];
+        /// Bit of the capabilities (`Rsiz`) that says High Throughput (ITU-T T.814, which is not read).
+        const HIGH_THROUGHPUT: u8 = 0x40;
+        match start {
+            [0xff, 0x4f, 0xff, 0x51, _, _, capabilities, ..] => {
+                (capabilities & HIGH_THROUGHPUT == 0).then_some(Self::Jpeg2000)
+            }
+            [0xff, 0xd8, rest @ ..] => Self::of_jpeg_segments(rest),
+            _ if start.starts_with(JPEG_2000_FILE) => Some(Self::Jpeg2000),
+            // Up to 15 planes, of which the first begins behind a table of 64 bytes (PS3.5, G.5).
+            [1..=15, 0, 0, 0, 64, 0, 0, 0, ..] => Some(Self::Rle),
+            _ => None,
+        }
+    }
+
+    /// As [`Self::of_picture`], of the segments of a JPEG up to that which says its size.
+    fn of_jpeg_segments(mut segments: &[u8]) -> Option<Self> {
+        while let [0xff, mark, high, low, ..] = *segments {
+            match mark {
+                // Sequential, extended, progressive, lossless (ITU-T T.81, table B.1).
+                0xc0..=0xc3 => return Some(Self::Jpeg),
+                0xf7 => return Some(Self::JpegLs),
+                _ => segments = segments.get(2 + usize::from(u16::from_be_bytes([high, low])).max(2)..)?,
+            }
+        }
+        None
+    }
+}
+
 /// A syntax that is not read: its name, and what helps.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(in crate::data::load::formats::dicom) struct NotRead {
+    /// Nobody but its maker knows it: what is there may be plain all the same.
+    pub(crate) is_private: bool,
     pub(in crate::data::load::formats::dicom) name: String,
     pub(in crate::data::load::formats::dicom) help: &'static str,
 }
+
+/// Private to GE: a data set without representations, pixels with their highest byte first.
+const PRIVATE_GE: &str = "1.2.840.113619.5.2";
 
 /// Where tools of every system know it.
 const CONVERT: &str = "convert it with `gdcmconv --raw in.dcm out.dcm`";
@@ -63,6 +100,8 @@ const FRAMES: &str = "take its pictures out: `gdcmraw -i in.dcm -o film.mpg`, `f
 pub(in crate::data::load::formats::dicom) struct Syntax {
     pub(in crate::data::load::formats::dicom) form: Form,
     pub(in crate::data::load::formats::dicom) is_deflated: bool,
+    /// The order of the bytes of pixels, where it is not that of the data set.
+    pub(crate) pixel_endian: Option<Endian>,
     /// Pixels are in fragments.
     pub(in crate::data::load::formats::dicom) is_encapsulated: bool,
     /// `Err` where it is not read.
@@ -72,7 +111,13 @@ pub(in crate::data::load::formats::dicom) struct Syntax {
 impl Syntax {
     /// The syntax of a data set whose file does not say it.
     pub(in crate::data::load::formats::dicom) fn unsaid(form: Form) -> Self {
-        Self { form, is_deflated: false, is_encapsulated: false, codec: Ok(Codec::Native) }
+        Self {
+            form,
+            is_deflated: false,
+            pixel_endian: None,
+            is_encapsulated: false,
+            codec: Ok(Codec::Native),
+        }
     }
 
     /// The syntax of an identifier.
@@ -81,11 +126,15 @@ impl Syntax {
         let encapsulated = |codec| Self {
             form: Form::EXPLICIT,
             is_deflated: false,
+            pixel_endian: None,
             is_encapsulated: true,
             codec: Ok(codec),
         };
+        if uid == PRIVATE_GE {
+            return Self { pixel_endian: Some(Endian::Big), ..native(Form::IMPLICIT) };
+        }
         let Some(rest) = uid.strip_prefix("1.2.840.10008.1.2") else {
-            return Self::refused(uid, "a private syntax", ASK);
+            return Self::private(uid, "a private syntax");
         };
         match rest {
             "" => native(Form::IMPLICIT),
@@ -103,7 +152,48 @@ impl Syntax {
             ".4.110" | ".4.111" | ".4.112" => Self::refused(uid, "JPEG XL", ASK),
             _ if rest.starts_with(".4.10") => Self::refused(uid, "a film (MPEG)", FRAMES),
             _ if rest.starts_with(".4.") => Self::refused(uid, "a rare kind of JPEG", CONVERT),
-            _ => Self::refused(uid, "a syntax that is not known", ASK),
+            _ => Self::private(uid, "a syntax that is not known"),
+        }
+    }
+
+    /// As [`Self::refused`], where a look at the pixels may show how they are written.
+    fn private(uid: &str, name: &str) -> Self {
+        let refused = Self::refused(uid, name, ASK);
+        let codec = refused.codec.map_err(|not_read| NotRead { is_private: true, ..not_read });
+        Self { codec, ..refused }
+    }
+
+    /// Whether only its maker knows it.
+    pub(crate) fn is_private(&self) -> bool {
+        self.codec.as_ref().is_err_and(|not_read| not_read.is_private)
+    }
+
+    /// The syntax after a look at the pixels: what is there counts, as programs convert pixels and forget to say so,
+    /// and private syntaxes are often plain.
+    ///
+    /// `length` is that of the pixels, none where they are in fragments, of which the first picture begins with `start`;
+    /// `expected` are the bytes of all pictures without compression.
+    #[must_use]
+    pub(crate) fn looked_at(self, length: Option<u64>, expected: Option<u64>, start: &[u8]) -> Self {
+        /// Bytes that fill up pixels.
+        const MOST_FILL: u64 = 16;
+        let is_open = match &self.codec {
+            Ok(codec) => *codec != Codec::Native || length.is_none(),
+            Err(not_read) => not_read.is_private,
+        };
+        if !is_open {
+            return self;
+        }
+        let is_plain = length.zip(expected).is_some_and(|(length, expected)| {
+            (expected..=expected.saturating_add(MOST_FILL)).contains(&length)
+        });
+        if is_plain {
+            return Self { is_encapsulated: false, codec: Ok(Codec::Native), ..self };
+        }
+        let found = if length.is_none() && self.codec.is_err() { Codec::of_picture(start) } else { None };
+        match found {
+            Some(codec) => Self { is_encapsulated: true, codec: Ok(codec), ..self },
+            None => self,
         }
     }
 
@@ -113,8 +203,9 @@ impl Syntax {
         Self {
             form: Form::EXPLICIT,
             is_deflated: false,
+            pixel_endian: None,
             is_encapsulated: true,
-            codec: Err(NotRead { name, help }),
+            codec: Err(NotRead { is_private: false, name, help }),
         }
     }
 }
@@ -138,11 +229,47 @@ mod tests {
         for (uid, name) in [
             ("1.2.840.10008.1.2.4.102", "film"),
             ("1.2.840.10008.1.2.4.201", "High-Throughput"),
-            ("1.2.840.113619.5.2", "private"),
+            ("1.3.46.670589.33.1.4.1", "private"),
             ("", "private"),
         ] {
             assert!(Syntax::of(uid).codec.unwrap_err().name.contains(name), "{uid}");
         }
+    }
+
+    #[test]
+    fn a_look_at_the_pixels_says_more_than_a_private_identifier() {
+        let codec = |uid: &str, length: Option<u64>, start: &[u8]| {
+            Syntax::of(uid).looked_at(length, Some(112), start).codec.ok()
+        };
+        let private = "1.3.46.670589.33.1.4.1";
+        for length in [112, 113] {
+            assert_eq!(codec(private, Some(length), &[]), Some(Codec::Native), "{length} bytes");
+        }
+        for length in [0, 111, 200] {
+            assert_eq!(codec(private, Some(length), &[]), None, "{length} bytes");
+        }
+        for (start, found) in [
+            (&[0xff, 0xd8, 0xff, 0xe0, 0, 4, 0, 0, 0xff, 0xc3, 0, 11][..], Some(Codec::Jpeg)),
+            (&[0xff, 0xd8, 0xff, 0xf7, 0, 11], Some(Codec::JpegLs)),
+            (&[0xff, 0xd8, 0xff, 0xe0, 0xff, 0xff], None),
+            (&[0xff, 0xd8, 0xff, 0xe0, 0, 0, 0, 0], None),
+            (&[0xff, 0x4f, 0xff, 0x51, 0, 41, 0, 0], Some(Codec::Jpeg2000)),
+            (&[0xff, 0x4f, 0xff, 0x51, 0, 41, 0x40, 0], None),
+            (&[2, 0, 0, 0, 64, 0, 0, 0], Some(Codec::Rle)),
+            (&[16, 0, 0, 0, 64, 0, 0, 0], None),
+            (&[], None),
+        ] {
+            assert_eq!(codec(private, None, start), found, "{start:?}");
+        }
+        // What is known is not guessed.
+        assert_eq!(codec("1.2.840.10008.1.2.4.201", Some(112), &[]), None);
+        assert_eq!(
+            codec("1.2.840.10008.1.2.4.70", Some(112), &[]),
+            Some(Codec::Native),
+            "unpacked, and not said"
+        );
+        assert_eq!(codec("1.2.840.10008.1.2.4.70", None, &[0xff, 0xd8, 0xff, 0xf7]), Some(Codec::Jpeg));
+        assert_eq!(Syntax::of(PRIVATE_GE).pixel_endian, Some(Endian::Big));
     }
 
     #[test]

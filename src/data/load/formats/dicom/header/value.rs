@@ -1,5 +1,6 @@
 //! The value of a data element (PS3.5 chapter 6): numbers are text, or binary, as the element's representation has it.
 
+use super::tags::Tag;
 use crate::data::load::Endian;
 
 /// Characters of a text that are kept.
@@ -81,6 +82,30 @@ impl Value<'_> {
         self.first().map(u32::from_le_bytes)
     }
 
+    /// So many whole numbers of 16 bits; what follows them does not count.
+    pub(super) fn shorts_of<const N: usize>(&self) -> Option<[u16; N]> {
+        let mut numbers = [0; N];
+        for (number, bytes) in numbers.iter_mut().zip(self.bytes.get(..2 * N)?.as_chunks::<2>().0) {
+            *number = Value { bytes, ..*self }.short()?;
+        }
+        Some(numbers)
+    }
+
+    /// The tag that it points to.
+    pub(super) fn tag(&self) -> Option<Tag> {
+        let [group, element] = self.shorts_of()?;
+        Some(Tag::from(group) << 16 | Tag::from(element))
+    }
+
+    /// So many numbers of 64 bits; what follows them does not count.
+    pub(super) fn doubles_of<const N: usize>(&self) -> Option<[f64; N]> {
+        let mut numbers = [0.0; N];
+        for (number, bytes) in numbers.iter_mut().zip(self.bytes.get(..8 * N)?.as_chunks::<8>().0) {
+            *number = Value { bytes, ..*self }.double()?;
+        }
+        Some(numbers)
+    }
+
     /// The first number of 64 bits.
     pub(super) fn double(&self) -> Option<f64> {
         self.first().map(f64::from_le_bytes).filter(|number| number.is_finite())
@@ -127,5 +152,12 @@ mod tests {
         let big = Value { bytes: &[0, 0, 1, 2], endian: Endian::Big };
         assert_eq!((big.short(), big.long(), big.double()), (Some(0), Some(258), None));
         assert_eq!(value(&[1, 2, 0, 0]).long(), Some(513));
+        assert_eq!((big.shorts_of(), big.shorts_of::<3>(), big.tag()), (Some([0, 258]), None, Some(258)));
+        assert_eq!(value(&[0x18, 0, 0x63, 0x10]).tag(), Some(0x0018_1063));
+        let doubles = [1.5f64, -2.0].map(f64::to_le_bytes).concat();
+        assert_eq!(
+            (value(&doubles).doubles_of(), value(&doubles).doubles_of::<3>()),
+            (Some([1.5, -2.0]), None)
+        );
     }
 }

@@ -4,7 +4,8 @@
 use std::io;
 
 use super::bytes::{Bytes, LONGEST_VALUE};
-use super::found::{Found, Place};
+use super::found::Found;
+use super::place::Place;
 use super::syntax::Form;
 use super::tags::{DOUBLES, FLOATS, ITEM, ITEM_END, PIXELS, SEQUENCE_END, Tag, written};
 use crate::data::attempt::Attempt;

@@ -5,5 +5,6 @@ mod extended;
 mod jpeg_ls;
 pub(super) mod raster;
 mod rle;
+pub(super) mod room;
 pub(super) mod shape;
 pub(super) mod store;

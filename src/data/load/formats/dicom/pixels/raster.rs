@@ -6,15 +6,30 @@ use crate::data::load::reading::number::Part;
 
 /// A type that voxels have.
 pub(in crate::data::load::formats::dicom) trait Voxel:
-    Copy + Default + Send
+    Copy + Default + Send + Sync
 {
+    /// Nothing: not a number, or 0 where every number is one.
+    const NOTHING: Self;
+    fn value(self) -> f64;
+    /// The nearest to a mean of values of this type.
+    fn of_mean(mean: f64) -> Self;
     fn of_integer(value: i64) -> Self;
     fn of_float(value: f64) -> Self;
 }
 
 macro_rules! voxel {
-    ($($type:ty),*) => { $(
+    ($($type:ty: $nothing:expr, $round:expr;)*) => { $(
         impl Voxel for $type {
+            const NOTHING: Self = $nothing;
+
+            fn value(self) -> f64 {
+                self as f64
+            }
+
+            fn of_mean(mean: f64) -> Self {
+                ($round)(mean) as Self
+            }
+
             // Every value that is stored fits into the type that was chosen for it.
             fn of_integer(value: i64) -> Self {
                 value as Self
@@ -26,9 +41,27 @@ macro_rules! voxel {
         }
     )* };
 }
-voxel!(u8, i8, u16, i16, u32, i32, f32);
+voxel! {
+    u8: 0, f64::round;
+    i8: 0, f64::round;
+    u16: 0, f64::round;
+    i16: 0, f64::round;
+    u32: 0, f64::round;
+    i32: 0, f64::round;
+    f32: f32::NAN, std::convert::identity;
+}
 
 impl Voxel for f64 {
+    const NOTHING: Self = Self::NAN;
+
+    fn value(self) -> f64 {
+        self
+    }
+
+    fn of_mean(mean: f64) -> Self {
+        mean
+    }
+
     fn of_integer(value: i64) -> Self {
         value as Self
     }
@@ -56,6 +89,7 @@ impl Raster {
             return self.write_colors(bytes, voxels);
         }
         match self.shape.number {
+            PixelNumber::Bit => self.write_integers(bytes.iter().map(|&bit| i64::from(bit)), voxels),
             PixelNumber::Integer(bits) => match bits.allocated {
                 8 => self.write_integers(bytes.iter().map(|&byte| bits.value(u32::from(byte))), voxels),
                 16 => self.write_integers(
@@ -115,12 +149,12 @@ impl Raster {
                 (PixelNumber::Integer(bits), _) => {
                     bits.value(bytes.first_chunk().map_or(0, |&raw| u32_of(raw, self.endian))) as f64
                 }
-                (PixelNumber::F32 | PixelNumber::F64, _) => 0.0,
+                (PixelNumber::Bit | PixelNumber::F32 | PixelNumber::F64, _) => 0.0,
             }
         };
         let most = match self.shape.number {
             PixelNumber::Integer(bits) => 2f64.powi(bits.stored as i32),
-            PixelNumber::F32 | PixelNumber::F64 => 1.0,
+            PixelNumber::Bit | PixelNumber::F32 | PixelNumber::F64 => 1.0,
         };
         for (pixel, voxel) in voxels.iter_mut().enumerate() {
             let stored = match (self.shape.colors, self.shape.is_planar) {

@@ -38,6 +38,8 @@ pub(in crate::data::load::formats::dicom) enum Colors {
 /// How a number is stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(in crate::data::load::formats::dicom) enum PixelNumber {
+    /// One bit, eight of them in a byte, the first the lowest; frames follow each other without a gap (PS3.5 section 8.1).
+    Bit,
     Integer(Bits),
     F32,
     F64,
@@ -89,6 +91,7 @@ impl Shape {
         let number = match header.pixels.map(|pixels| pixels.tag) {
             Some(FLOATS) => PixelNumber::F32,
             Some(DOUBLES) => PixelNumber::F64,
+            _ if header.found.bits_allocated == Some(1) && samples == 1 => PixelNumber::Bit,
             _ => PixelNumber::Integer(bits(attempt, header)?),
         };
         let shape = Self {
@@ -114,9 +117,10 @@ impl Shape {
         self.columns * self.rows
     }
 
-    /// Bytes of a number.
+    /// Bytes of a number; a bit takes a byte once it is unpacked.
     pub(in crate::data::load::formats::dicom) fn bytes(&self) -> usize {
         match self.number {
+            PixelNumber::Bit => 1,
             PixelNumber::Integer(bits) => bits.allocated as usize / 8,
             PixelNumber::F32 => 4,
             PixelNumber::F64 => 8,
@@ -134,9 +138,18 @@ impl Shape {
         (self.pixels() as u64 * self.bytes_of_pair() as u64).div_ceil(2)
     }
 
+    /// Bytes of so many frames as they are stored without compression, no more than can be counted.
+    pub(crate) fn stored_bytes(&self, frames: u64) -> u64 {
+        match self.number {
+            PixelNumber::Bit => (self.pixels() as u64).saturating_mul(frames).div_ceil(8),
+            _ => self.bytes_of_frame().saturating_mul(frames),
+        }
+    }
+
     /// The type of voxels that have what is stored.
     pub(in crate::data::load::formats::dicom) fn voxel_type(&self) -> VoxelType {
         match self.number {
+            PixelNumber::Bit => VoxelType::U8,
             PixelNumber::F32 => VoxelType::F32,
             PixelNumber::F64 => VoxelType::F64,
             PixelNumber::Integer(Bits { allocated, is_signed, .. }) => match (allocated, is_signed) {
@@ -156,17 +169,12 @@ fn bits(attempt: Attempt<'_>, header: &Header) -> Result<Bits, LoadError> {
     let found = &header.found;
     let allocated = u32::from(found.bits_allocated.unwrap_or(16));
     if !matches!(allocated, 8 | 16 | 32) {
-        let (why, help) = match allocated {
-            1 => (
-                "pixels of one bit, as those of segmentations, are not read".to_owned(),
-                "convert it: `segimage2itkimage --inputDICOM in.dcm --outputDirectory . -t nrrd` (dcmqi)",
-            ),
-            _ => (
-                format!("numbers of {allocated} bits are not read, but those of 8, 16 and 32"),
-                "convert it with `gdcmconv --raw in.dcm out.dcm`",
-            ),
-        };
-        return Err(attempt.bad_input("Bits Allocated", why, help));
+        let why = format!("numbers of {allocated} bits are not read, but those of 1, 8, 16 and 32");
+        return Err(attempt.bad_input(
+            "Bits Allocated",
+            why,
+            "convert it with `gdcmconv --raw in.dcm out.dcm`",
+        ));
     }
     let stored = found.bits_stored.map_or(allocated, u32::from);
     let stored = if (1..=allocated).contains(&stored) { stored } else { allocated };

@@ -4,12 +4,13 @@ use std::io::{self, Read as _};
 
 use super::super::header::Header;
 use super::super::header::bytes::Bytes;
-use super::super::header::syntax::{Codec, NotRead};
+use super::super::header::syntax::Codec;
 use super::super::header::tags::{ITEM, SEQUENCE_END};
 use super::super::header::walk::PixelElement;
 use super::codec::{Unpacked, unpack};
 use super::raster::{Raster, Voxel};
-use super::shape::Shape;
+use super::room::{HELP_COPY, check_room, readable_codec, truncated};
+use super::shape::{PixelNumber, Shape};
 use crate::data::attempt::{Attempt, human_bytes};
 use crate::data::load::reading::input::Input;
 use crate::data::load::reading::read_files::note;
@@ -20,8 +21,6 @@ const MOST_FRAGMENTS: usize = 1 << 22;
 
 /// Pixels that are read at a time; an even number.
 const PIXELS_AT_ONCE: usize = 1 << 18;
-
-const HELP_COPY: &str = "copy or export the file again";
 
 /// A piece of compressed pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -60,26 +59,20 @@ impl Store {
         let Some(pixels) = header.pixels else {
             return Err(attempt.bad_input("Pixel Data", "it has no pixels", HELP_COPY));
         };
-        let codec = header.syntax.codec.as_ref().map_err(|NotRead { name, help }| {
-            attempt.bad_input(
-                "Transfer Syntax",
-                format!("its pixels are compressed in a way that is not read: {name}"),
-                *help,
-            )
-        })?;
+        let codec = readable_codec(attempt, header)?;
         if pixels.length.is_none() {
-            let packed = Self::packed(attempt, header, pixels, *codec, count, control)?;
+            let packed = Self::packed(attempt, header, pixels, codec, count, control)?;
             return Ok(Self { shape, kept: packed });
         }
         if header.syntax.is_encapsulated {
             return Err(attempt.bad_input("Pixel Data", "compressed pixels are not in fragments", HELP_COPY));
         }
         if header.syntax.is_deflated {
-            let expected = shape.bytes_of_frame().saturating_mul(count);
+            let expected = shape.stored_bytes(count);
             return Self::inflated(attempt, header, shape, expected, budget_bytes, control);
         }
         check_room(attempt, header, &shape)?;
-        let endian = header.syntax.form.endian;
+        let endian = header.syntax.pixel_endian.unwrap_or(header.syntax.form.endian);
         let is_swapped = endian == Endian::Big && shape.bytes() == 1 && pixels.is_words;
         Ok(Self { shape, kept: Kept::Plain { offset: pixels.offset, endian, is_swapped } })
     }
@@ -185,6 +178,11 @@ impl Store {
         Ok(Kept::Packed { codec, frames })
     }
 
+    /// How its pictures are stored.
+    pub(crate) fn shape(&self) -> Shape {
+        self.shape
+    }
+
     /// Reads a frame's voxels.
     pub(in crate::data::load::formats::dicom) fn read<T: Voxel>(
         &self,
@@ -197,6 +195,9 @@ impl Store {
         note(attempt.path);
         let size = self.shape.bytes_of_frame();
         let beyond = || attempt.bad_input("Number of Frames", "it has fewer frames than it says", HELP_COPY);
+        if self.shape.number == PixelNumber::Bit {
+            return self.read_bits(attempt, frame, raster, voxels);
+        }
         match &self.kept {
             Kept::Plain { offset, endian, is_swapped } => {
                 let start = size.checked_mul(frame as u64).and_then(|start| start.checked_add(*offset));
@@ -243,84 +244,54 @@ impl Store {
     }
 }
 
-impl Codec {
-    /// How many bytes of pixels can be in so many bytes of a file. Decoders take time and memory for all of them, whatever
-    /// there is.
-    fn most(self, packed: u64, frames: u64, shape: &Shape) -> u64 {
-        let of_number = shape.bytes() as u64;
-        match self {
-            Self::Native => u64::MAX,
-            // A byte is repeated 128 times by two (PS3.5, G.3.1).
-            Self::Rle => packed.saturating_mul(64),
-            // A bit for each block of 8 x 8 numbers, of which some stand for four.
-            Self::Jpeg => packed.saturating_mul(8 * 64 * 2 * of_number),
-            // Runs and empty packets know no limit; pictures of one grey are a few hundred bytes.
-            Self::JpegLs | Self::Jpeg2000 => {
-                let with_empty = packed.saturating_add(frames.saturating_mul(MOST_EMPTY));
-                with_empty.saturating_mul(MOST_EMPTY * of_number)
+impl Store {
+    /// As [`Self::read`], of pixels of one bit.
+    fn read_bits<T: Voxel>(
+        &self,
+        attempt: Attempt<'_>,
+        frame: usize,
+        raster: Raster,
+        voxels: &mut [T],
+    ) -> Result<(), LoadError> {
+        let beyond = || attempt.bad_input("Number of Frames", "it has fewer frames than it says", HELP_COPY);
+        let pixels = self.shape.pixels() as u64;
+        let first = pixels.checked_mul(frame as u64).ok_or_else(beyond)?;
+        // From the word on in which the frame begins, where bytes are swapped within words.
+        let start = first / 16 * 2;
+        let skipped = (first - start * 8) as usize;
+        let length = (skipped as u64 + pixels).div_ceil(16) * 2;
+        let mut packed = Vec::new();
+        match &self.kept {
+            Kept::Plain { offset, is_swapped, .. } => {
+                let mut input = Input::open(attempt)?;
+                input.seek(offset.saturating_add(start)).map_err(|error| attempt.io(error))?;
+                let read = input.reader.by_ref().take(length).read_to_end(&mut packed);
+                read.map_err(|error| attempt.io(error))?;
+                if *is_swapped {
+                    packed.as_chunks_mut::<2>().0.iter_mut().for_each(|pair| pair.swap(0, 1));
+                }
+            }
+            Kept::Inflated(bytes) => {
+                let from = usize::try_from(start).ok().and_then(|start| bytes.get(start..));
+                let from = from.ok_or_else(beyond)?;
+                packed.extend_from_slice(&from[..from.len().min(length as usize)]);
+            }
+            Kept::Packed { .. } => {
+                return Err(attempt.bad_input(
+                    "Pixel Data",
+                    "compressed pixels of one bit are not read",
+                    "convert it with `gdcmconv --raw in.dcm out.dcm`",
+                ));
             }
         }
-    }
-}
-
-/// Bytes that are added to those of a picture of which hardly any are needed; and numbers that one of them can stand for:
-/// 4096² of one grey fit in none.
-const MOST_EMPTY: u64 = 4096;
-
-/// Deflate makes at most so many bytes of one.
-const MOST_DEFLATED: u64 = 1032;
-
-/// Checks that a file has room for the frames that it announces, before any of them is made room for.
-pub(in crate::data::load::formats::dicom) fn check_room(
-    attempt: Attempt<'_>,
-    header: &Header,
-    shape: &Shape,
-) -> Result<(), LoadError> {
-    let Some(pixels) = header.pixels else { return Ok(()) };
-    let count = header.frame_count();
-    let left = header.len.saturating_sub(pixels.offset);
-    let is_roomy =
-        |codec: Codec| shape.bytes_of_frame().saturating_mul(count) <= codec.most(left, count, shape);
-    match pixels.length {
-        // A fragment begins with 8 bytes.
-        None if count > left / 8 => Err(attempt.bad_input(
-            "Number of Frames",
-            format!("the file has no room for the {count} frames that it announces"),
-            HELP_COPY,
-        )),
-        None if header.syntax.codec.as_ref().is_ok_and(|codec| !is_roomy(*codec)) => {
-            let Shape { columns, rows, .. } = shape;
-            let found = format!(
-                "the data are truncated: {count} frames of {columns} x {rows} pixels do not fit in {left} \
-                 compressed bytes"
-            );
-            Err(attempt.bad_input("Pixel Data", found, HELP_COPY))
+        if ((packed.len() * 8) as u64) < skipped as u64 + pixels {
+            return Err(beyond());
         }
-        None => Ok(()),
-        Some(length) => {
-            let expected = shape.bytes_of_frame().max(1).checked_mul(count);
-            let most =
-                if header.syntax.is_deflated { header.len.saturating_mul(MOST_DEFLATED) } else { length };
-            if expected.is_some_and(|expected| expected <= most) {
-                Ok(())
-            } else {
-                Err(truncated(attempt, shape, count, length))
-            }
-        }
+        let bit = |at: usize| packed[at / 8] >> (at % 8) & 1;
+        let bits: Vec<u8> = (skipped..skipped + voxels.len()).map(bit).collect();
+        raster.write(&bits, voxels);
+        Ok(())
     }
-}
-
-fn truncated(attempt: Attempt<'_>, shape: &Shape, count: u64, found: u64) -> LoadError {
-    let expected = u128::from(shape.bytes_of_frame()) * u128::from(count);
-    let (columns, rows) = (shape.columns, shape.rows);
-    attempt.bad_input(
-        "Pixel Data",
-        format!(
-            "the data are truncated: {expected} bytes expected for {count} frames of {columns} x {rows} pixels, \
-             {found} found"
-        ),
-        HELP_COPY,
-    )
 }
 
 /// The bytes of pieces, one after the other. They lie in the file, as has been checked.

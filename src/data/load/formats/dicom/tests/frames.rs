@@ -71,14 +71,17 @@ fn each_frame_has_its_own_scale() {
 
 #[test]
 fn frames_without_places_are_stacked_and_that_is_said() {
-    let volume = film(&[1, 2, 3]).load().unwrap();
+    let thick = film(&[1, 2, 3]).load().unwrap();
+    assert_eq!(place(&thick)[6..], [0.0, 0.0, 2.5, -1.0, -2.0, 3.0]);
+    assert_remark(&thick, "2.5 mm, is taken from Slice Thickness");
+    let volume = film(&[1, 2, 3]).with(|set| set.without(tags::SLICE_THICKNESS)).load().unwrap();
     assert_eq!(volume.samples(), &Samples::U16(vec![1, 2, 3]));
     assert!(volume.has_unknown_scale());
     assert_remark(&volume, "stacked in their order");
     assert_eq!(volume.spacing_mm(), glam::DVec3::new(0.25, 0.5, 0.5), "pixels keep their shape");
     let volume = film(&[1, 2, 3]).with(|set| set.decimal(tags::SPACING_BETWEEN, "-4")).load().unwrap();
     assert_eq!(place(&volume)[6..], [0.0, 0.0, -4.0, -1.0, -2.0, 3.0]);
-    assert!(volume.remarks().is_empty(), "{:?}", volume.remarks());
+    assert_remark(&volume, "4 mm, is taken from Spacing Between Slices");
     let offsets = |set: Set| set.decimal(tags::FRAME_OFFSETS, "0\\3\\6").decimal(tags::DOSE_SCALING, "0.5");
     let volume = film(&[1, 2, 3]).with(offsets).load().unwrap();
     assert_eq!(place(&volume)[8], 3.0);
@@ -92,6 +95,6 @@ fn directions_of_one_file_are_series() {
     let turned = Set::default().decimal(tags::ORIENTATION, "1\\0\\0\\0\\1\\0");
     items[1] = items[1].clone().items(tags::PLANE_ORIENTATION, vec![turned], false);
     assert_refused(file.load(), LoadErrorKind::BadInput, &["2 series", "CT Head sagittal", "CT Head axial"]);
-    let choice = Choice::default().with(super::super::Dimension::Series, "CT Head axial");
+    let choice = Choice::default().with(crate::data::load::Dimension::Series, "CT Head axial");
     assert_eq!(file.load_with(choice).unwrap().samples().value(0), 3.0);
 }

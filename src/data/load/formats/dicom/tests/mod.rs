@@ -2,9 +2,16 @@
 
 mod codecs;
 mod frames;
+mod gaps;
+mod mosaics;
+mod nested;
+mod phases;
 mod pixels;
 mod refused;
+mod segments;
 mod series;
+mod unplaced;
+mod unreadable;
 
 use std::collections::BTreeMap;
 use std::io::Write as _;
@@ -211,6 +218,26 @@ impl File {
         let folder = TempDir::new().unwrap();
         load_path(&self.write(&folder, "a.dcm"), choice)
     }
+}
+
+/// A picture of 4 x 3 pixels v = x + 10 y + `base` in a place.
+fn numbered(base: u16) -> File {
+    File::new(EXPLICIT).size(4, 3).words(&numbered_values(&[base]))
+}
+
+/// The pixels of pictures as [`numbered`] makes them.
+fn numbered_values(bases: &[u16]) -> Vec<u16> {
+    let pixels = |&base: &u16| (0..12).map(move |at| at % 4 + at / 4 * 10 + base);
+    bases.iter().flat_map(pixels).collect()
+}
+
+/// A folder with these files, each called by its number.
+fn folder(files: &[File]) -> TempDir {
+    let folder = TempDir::new().unwrap();
+    for (number, file) in files.iter().enumerate() {
+        file.write(&folder, &format!("{number}"));
+    }
+    folder
 }
 
 #[track_caller]

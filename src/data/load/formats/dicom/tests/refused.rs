@@ -5,11 +5,37 @@ use super::*;
 #[test]
 fn files_without_pictures_say_what_they_are() {
     let without = |set: Set| set.without(tags::PIXELS);
-    let report = File::new(EXPLICIT).with(without).with(|set| set.text(tags::MODALITY, *b"CS", "SR"));
-    assert_refused(report.load(), LoadErrorKind::BadInput, &["no pixels", "\"SR\""]);
+    let report = File::new(EXPLICIT)
+        .with(without)
+        .with(|set| set.text(tags::MODALITY, *b"CS", "OT").text(tags::SOP_CLASS, *b"UI", "1.2.3"));
+    assert_refused(report.load(), LoadErrorKind::BadInput, &["no pixels", "\"OT\""]);
+    for (class, name, help) in [
+        ("481.3", "RT Structure Set", "dcmrtstruct2nii"),
+        ("481.3", "RT Structure Set", "plastimatch convert"),
+        ("481.5", "RT Plan", "RTDOSE"),
+        ("88.22", "Structured Report", "dsrdump"),
+        ("11.1", "Presentation State", "open the pictures"),
+        ("104.1", "Encapsulated PDF", "dcm2pdf"),
+        ("9.1.1", "Waveform", "no voxels"),
+        ("66", "Raw Data", "reconstruct"),
+    ] {
+        let class = format!("1.2.840.10008.5.1.4.1.1.{class}");
+        let object = File::new(EXPLICIT).with(without).with(|set| set.text(tags::SOP_CLASS, *b"UI", &class));
+        assert_refused(object.load(), LoadErrorKind::BadInput, &[name, help, "SOP Class UID"]);
+        let at = folder(&[object.clone(), object]);
+        assert_refused(
+            load_path(at.path(), Choice::default()),
+            LoadErrorKind::BadInput,
+            &["2 DICOM files", name],
+        );
+    }
     let directory =
         File::new(EXPLICIT).with(without).with(|set| set.items(tags::DIRECTORY_RECORDS, Vec::new(), false));
-    assert_refused(directory.load(), LoadErrorKind::BadInput, &["lists the files of a disk", "folder"]);
+    assert_refused(
+        directory.load(),
+        LoadErrorKind::BadInput,
+        &["lists the files of a disk", "open the folder that it lies in"],
+    );
 }
 
 #[test]
@@ -24,8 +50,11 @@ fn kinds_that_are_not_read_are_named_with_what_helps() {
         let file = File::new(syntax).fragments(&[&[], &[0; 8]]);
         assert_refused(file.load(), LoadErrorKind::BadInput, &[words, help, "Transfer Syntax"]);
     }
-    let mask = File::new(EXPLICIT).bits(1, 1, false).load();
-    assert_refused(mask, LoadErrorKind::BadInput, &["segmentations", "segimage2itkimage"]);
+    assert_refused(
+        File::new(EXPLICIT).bits(4, 4, false).load(),
+        LoadErrorKind::BadInput,
+        &["4 bits", "gdcmconv"],
+    );
     assert_refused(File::new(EXPLICIT).bits(64, 64, false).load(), LoadErrorKind::BadInput, &["64 bits"]);
 }
 

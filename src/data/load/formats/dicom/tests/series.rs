@@ -13,14 +13,6 @@ fn slice(z: &str, value: u16, number: &str) -> File {
     })
 }
 
-fn folder(files: &[File]) -> TempDir {
-    let folder = TempDir::new().unwrap();
-    for (number, file) in files.iter().enumerate() {
-        file.write(&folder, &format!("{number}"));
-    }
-    folder
-}
-
 fn load_all(files: &[File]) -> Result<Volume, LoadError> {
     load_path(folder(files).path(), Choice::default())
 }
@@ -45,14 +37,14 @@ fn slices_are_in_the_order_in_which_they_lie() {
 fn what_is_odd_about_a_series_is_said() {
     for (files, expected, words) in [
         (
-            vec![slice("0", 1, "1"), slice("1", 2, "2"), slice("3", 3, "3"), slice("4", 4, "4")],
-            vec![1, 2, 3, 4],
-            "about 1 slices are missing",
+            vec![slice("0", 1, "1"), slice("1", 2, "2"), slice("3", 4, "3"), slice("4", 5, "4")],
+            vec![1, 2, 3, 4, 5],
+            "1 slice is missing of 5",
         ),
         (
-            vec![slice("0", 1, "1"), slice("1", 2, "2"), slice("2.4", 3, "3")],
-            vec![1, 2, 3],
-            "1.0000 to 1.4000 mm apart",
+            vec![slice("0", 100, "1"), slice("1", 200, "2"), slice("2.4", 340, "3")],
+            vec![100, 220, 340],
+            "1.0000 to 1.4000 mm apart: they are interpolated to layers 1.2000 mm apart",
         ),
         (vec![slice("0", 1, "1"), slice("1", 2, "2"), slice("1", 2, "2")], vec![1, 2], "copies of others"),
         (
@@ -122,7 +114,7 @@ fn series_of_a_folder_are_offered() {
     assert_refused(
         load_path(at.path(), Choice::default()),
         LoadErrorKind::BadInput,
-        &["2 series", "(2 x 1 x 1)"],
+        &["2 series", "0 \"CT Head axial\" (1 x 1 x 2)", "1 \"CT Head axial\" (2 x 1 x 1)"],
     );
     assert_remark(&load_path(&at.path().join("0"), Choice::default()).unwrap(), "another size");
 }
@@ -135,7 +127,7 @@ fn files_that_are_no_slices_do_not_disturb() {
     std::fs::write(at.path().join("broken"), &broken[..165]).unwrap();
     let volume = load_path(at.path(), Choice::default()).unwrap();
     assert_eq!(volume.samples(), &Samples::U16(vec![1, 2]));
-    assert_remark(&volume, "a file is left out: cannot read the DICOM file");
+    assert_remark(&volume, "1 of 3 files is left out: cannot read the DICOM file");
     assert_refused(load_all(&[report]), LoadErrorKind::BadInput, &["1 DICOM files have no pixels"]);
 }
 
@@ -147,7 +139,7 @@ fn what_is_left_out_is_said() {
     for path in [at.path().to_owned(), at.path().join("0")] {
         let volume = load_path(&path, Choice::default()).unwrap();
         assert_eq!(volume.samples(), &Samples::U16(vec![1, 2]));
-        assert_remark(&volume, "a file is left out");
+        assert_remark(&volume, "1 of 3 slices is left out");
         assert_remark(&volume, "truncated");
     }
 }
@@ -160,4 +152,35 @@ fn scales_of_slices_may_differ() {
     let volume = load_all(&[scaled("0", 10, "0.5"), scaled("1", 10, "2")]).unwrap();
     assert_eq!(volume.samples(), &Samples::F32(vec![5.0, 20.0]));
     assert_eq!(volume.hints().unit(), Some("BQML"));
+}
+
+/// A picture that shows where the scan was to be is numbered before the scan.
+#[test]
+fn the_largest_volume_comes_first() {
+    let scout = numbered(7).with(|set| {
+        set.text(tags::SERIES, *b"UI", "9.9")
+            .text(tags::SERIES_NUMBER, *b"IS", "1")
+            .text(tags::SERIES_DESCRIPTION, *b"LO", "Topogram")
+            .decimal(tags::ORIENTATION, "1\\0\\0\\0\\0\\-1")
+    });
+    let scan = ["0", "1", "2"].map(|z| {
+        let set = slice(z, 5, z).size(4, 3).words(&numbered_values(&[100]));
+        set.with(|set| set.text(tags::SERIES_NUMBER, *b"IS", "2"))
+    });
+    // A film of more pictures than the scan has slices.
+    let film = (0..6).map(|n| {
+        numbered(n).with(|set| {
+            set.text(tags::SERIES, *b"UI", "9.8").text(tags::SERIES_NUMBER, *b"IS", "0").text(
+                tags::SERIES_DESCRIPTION,
+                *b"LO",
+                "Fluoroscopy",
+            )
+        })
+    });
+    let at = folder(&[scout].into_iter().chain(scan).chain(film).collect::<Vec<_>>());
+    let words =
+        ["0 \"CT Head axial\" (4 x 3 x 3)", "1 \"CT Topogram coronal\"", "2 \"CT Fluoroscopy axial\""];
+    assert_refused(load_path(at.path(), Choice::default()), LoadErrorKind::BadInput, &words);
+    let opened = load_path(at.path(), Choice::default().or_first()).unwrap();
+    assert_eq!(opened.dims(), [4, 3, 3], "the window opens the first");
 }

@@ -1,0 +1,63 @@
+//! The order in which people have names: `slice 9` before `slice 10`.
+
+/// A piece of a name, so that numbers come in the order of their values.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Piece {
+    /// Digits without leading zeros, shorter ones first; then how many there were.
+    Number(usize, String, usize),
+    Text(String),
+}
+
+/// By what names are put in natural order.
+pub(crate) fn natural(name: &str) -> Vec<Piece> {
+    let mut pieces = Vec::new();
+    let mut rest = name;
+    while let Some(first) = rest.chars().next() {
+        let is_number = first.is_ascii_digit();
+        let end = rest.find(|c: char| c.is_ascii_digit() != is_number).unwrap_or(rest.len());
+        let (piece, after) = rest.split_at(end);
+        pieces.push(if is_number {
+            let digits = piece.trim_start_matches('0');
+            Piece::Number(digits.len(), digits.to_owned(), piece.len())
+        } else {
+            Piece::Text(piece.to_lowercase())
+        });
+        rest = after;
+    }
+    pieces
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_in_the_order_of_their_values() {
+        let mut names = [
+            "b1",
+            "a10",
+            "a9",
+            "A2.tif",
+            "a010",
+            "a",
+            "2",
+            "10",
+            "x99999999999999999999",
+            "x100000000000000000000",
+        ];
+        names.sort_by_cached_key(|name| natural(name));
+        let expected = [
+            "2",
+            "10",
+            "a",
+            "A2.tif",
+            "a9",
+            "a10",
+            "a010",
+            "b1",
+            "x99999999999999999999",
+            "x100000000000000000000",
+        ];
+        assert_eq!(names, expected);
+    }
+}

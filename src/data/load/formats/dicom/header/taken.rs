@@ -1,0 +1,159 @@
+//! When and how a picture was taken: by what pictures of one place are told apart.
+
+use crate::data::plain;
+
+/// An attribute in which pictures of one place can differ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Attribute {
+    /// Temporal Position Identifier (0020,0100), or Index (0020,9128).
+    TemporalPosition,
+    /// Diffusion b-value, s/mm².
+    BValue,
+    /// Echo Time, ms.
+    EchoTime,
+    /// Echo Number(s).
+    EchoNumber,
+    /// Inversion Time, ms.
+    InversionTime,
+    /// Flip Angle, degrees.
+    FlipAngle,
+    /// KVP: the voltage of an X-ray tube, kV.
+    TubeVoltage,
+    /// Image Type (0008,0008) or Frame Type (0008,9007): a number of texts, in their order.
+    ImageType,
+    /// Nominal Percentage of Cardiac Phase.
+    CardiacPhase,
+    /// Trigger Time, or Nominal Cardiac Trigger Delay Time, ms.
+    TriggerTime,
+    /// Frame Reference Time, ms.
+    ReferenceTime,
+    /// Acquisition Number, or Frame Acquisition Number.
+    Acquisition,
+    /// Acquisition Time, seconds of the day.
+    AcquisitionTime,
+    /// Content Time, seconds of the day.
+    ContentTime,
+    /// Instance Number.
+    Instance,
+}
+
+/// How many [`Attribute`]s there are.
+const COUNT: usize = 15;
+
+impl Attribute {
+    /// All of them: what a series is made to vary comes before what merely passes while it is taken.
+    pub(crate) const ALL: [Self; COUNT] = [
+        Self::TemporalPosition,
+        Self::BValue,
+        Self::EchoTime,
+        Self::EchoNumber,
+        Self::InversionTime,
+        Self::FlipAngle,
+        Self::TubeVoltage,
+        Self::ImageType,
+        Self::CardiacPhase,
+        Self::TriggerTime,
+        Self::ReferenceTime,
+        Self::Acquisition,
+        Self::AcquisitionTime,
+        Self::ContentTime,
+        Self::Instance,
+    ];
+
+    /// What users call it.
+    fn name(self) -> &'static str {
+        match self {
+            Self::TemporalPosition => "temporal position",
+            Self::BValue => "b value",
+            Self::EchoTime => "echo time",
+            Self::EchoNumber => "echo",
+            Self::InversionTime => "inversion time",
+            Self::FlipAngle => "flip angle",
+            Self::TubeVoltage => "tube voltage",
+            Self::ImageType => "image type",
+            Self::CardiacPhase => "cardiac phase",
+            Self::TriggerTime => "trigger time",
+            Self::ReferenceTime => "reference time",
+            Self::Acquisition => "acquisition",
+            Self::AcquisitionTime => "acquired at",
+            Self::ContentTime => "made at",
+            Self::Instance => "instance",
+        }
+    }
+
+    fn unit(self) -> &'static str {
+        match self {
+            Self::EchoTime | Self::InversionTime | Self::TriggerTime | Self::ReferenceTime => " ms",
+            Self::FlipAngle => "°",
+            Self::TubeVoltage => " kV",
+            Self::CardiacPhase => " %",
+            _ => "",
+        }
+    }
+
+    /// Name and value in words; `image_types` are the texts that [`Self::ImageType`] counts.
+    pub(crate) fn in_words(self, value: f64, image_types: &[String]) -> String {
+        let name = self.name();
+        match self {
+            Self::ImageType => {
+                let text = image_types.get(value as usize).map_or("", String::as_str);
+                format!("{name} {}", plain(text, 60))
+            }
+            Self::AcquisitionTime | Self::ContentTime => {
+                let (minutes, seconds) = ((value / 60.0) as u32, value % 60.0);
+                format!("{name} {:02}:{:02}:{seconds:06.3}", minutes / 60, minutes % 60)
+            }
+            _ => format!("{name} {value}{}", self.unit()),
+        }
+    }
+}
+
+/// What is said of each [`Attribute`] of a picture; not a number where nothing is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Taken([f64; COUNT]);
+
+impl Default for Taken {
+    fn default() -> Self {
+        Self([f64::NAN; COUNT])
+    }
+}
+
+impl Taken {
+    /// The value of an attribute.
+    pub(crate) fn get(&self, attribute: Attribute) -> Option<f64> {
+        Some(self.0[attribute as usize]).filter(|value| !value.is_nan())
+    }
+
+    /// States the value of an attribute; none says nothing.
+    pub(crate) fn set(&mut self, attribute: Attribute, value: Option<f64>) {
+        if let Some(value) = value {
+            self.0[attribute as usize] = value;
+        }
+    }
+
+    /// What is said here, or else in `all`.
+    pub(crate) fn or(&self, all: &Self) -> Self {
+        Self(std::array::from_fn(|at| if self.0[at].is_nan() { all.0[at] } else { self.0[at] }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn attributes_are_kept_and_named() {
+        for (at, attribute) in Attribute::ALL.into_iter().enumerate() {
+            assert_eq!(attribute as usize, at, "each has a place of its own");
+        }
+        let mut taken = Taken::default();
+        assert_eq!(taken.get(Attribute::BValue), None);
+        taken.set(Attribute::BValue, Some(1000.0));
+        taken.set(Attribute::BValue, None);
+        assert_eq!(Taken::default().or(&taken).get(Attribute::BValue), Some(1000.0));
+        let types = ["ORIGINAL M".to_owned(), "ORIGINAL P".to_owned()];
+        assert_eq!(Attribute::ImageType.in_words(1.0, &types), "image type ORIGINAL P");
+        assert_eq!(Attribute::TriggerTime.in_words(80.0, &types), "trigger time 80 ms");
+        assert_eq!(Attribute::AcquisitionTime.in_words(3723.5, &types), "acquired at 01:02:03.500");
+    }
+}

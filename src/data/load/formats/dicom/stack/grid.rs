@@ -1,0 +1,268 @@
+//! An even grid of layers for slices that lie along a line: every slice at its own place, whatever is missing.
+
+use crate::data::load::formats::dicom::layer::{Filling, Layer};
+
+/// How far from where an even grid has it a slice may lie, as a share of the distance between two.
+const EVEN: f64 = 0.05;
+
+/// How far the distance of a grid may be from that which it was sought with, as a share.
+const MOST_OFF: f64 = 0.1;
+
+/// Layers that an even grid may have for each slice: more would be made up than was measured.
+const MOST_LAYERS_A_SLICE: usize = 4;
+
+/// Layers beyond those, so that the few slices of a small volume may lie far apart.
+const MORE_LAYERS: usize = 256;
+
+/// Most layers of segments, of which only slices with something in them are stored: four times the longest scans.
+const MOST_LAYERS_OF_SEGMENTS: usize = 1 << 14;
+
+/// Missing slices that are interpolated. Across more a straight line says nothing of what lies there.
+const MOST_BRIDGED: f64 = 3.0;
+
+/// Layers at even distances.
+#[derive(Debug)]
+pub(crate) struct SliceGrid {
+    pub(crate) layers: Vec<Layer>,
+    /// Between two layers, in the unit of the slices' places.
+    pub(crate) distance: f64,
+    pub(crate) remark: Option<String>,
+}
+
+impl SliceGrid {
+    /// The grid of slices at ascending places, millimetres; at least two.
+    ///
+    /// `distance_mm` is that which the header says between segments' slices.
+    pub(crate) fn new(places_mm: &[f64], filling: Filling, distance_mm: Option<f64>) -> Self {
+        let (first, last) = (places_mm[0], places_mm[places_mm.len() - 1]);
+        let span = last - first;
+        let distances: Vec<f64> = places_mm.windows(2).map(|two| two[1] - two[0]).collect();
+        let mut sorted = distances.clone();
+        sorted.sort_by(f64::total_cmp);
+        let at = |share: usize| sorted[(sorted.len() - 1) * share / 4];
+        let (shortest, quarter, usual, longest) = (sorted[0], at(1), at(2), sorted[sorted.len() - 1]);
+        let most = match filling {
+            Filling::NoSegment => MOST_LAYERS_OF_SEGMENTS.max(places_mm.len()),
+            _ => MOST_LAYERS_A_SLICE * places_mm.len() + MORE_LAYERS,
+        };
+        let said = distance_mm.filter(|_| filling == Filling::NoSegment);
+        let mean = span / distances.len() as f64;
+        let candidates = said.into_iter().chain([mean, usual, quarter, shortest]);
+        for candidate in candidates {
+            if let Some(steps) = whole_steps(places_mm, candidate, most) {
+                return Self::with_missing(&steps, span, filling);
+            }
+        }
+        let apart = format!("its slices are {} to {} apart", length(shortest), length(longest));
+        let intervals = (span / quarter).round().max(1.0);
+        if !(intervals < most as f64) {
+            let layers = (0..places_mm.len()).map(Layer::Picture).collect();
+            let remark = format!(
+                "{apart}, too unevenly to show each at its place: they are shown {} apart",
+                length(mean)
+            );
+            return Self { layers, distance: mean, remark: Some(remark) };
+        }
+        let distance = span / intervals;
+        let is_bridged = bridged(&distances, usual, filling);
+        let layers: Vec<Layer> = (0..=intervals as usize)
+            .map(|step| at_place(places_mm, first + step as f64 * distance, distance, &is_bridged))
+            .collect();
+        let empty = layers.iter().filter(|layer| **layer == Layer::Empty).count();
+        let how = match filling {
+            Filling::Means => "interpolated to layers",
+            Filling::Nearest | Filling::NoSegment => "the nearest to layers",
+        };
+        let left = if empty > 0 { format!(", {empty} in long gaps are left empty") } else { String::new() };
+        Self {
+            layers,
+            distance,
+            remark: Some(format!("{apart}: they are {how} {} apart{left}", length(distance))),
+        }
+    }
+
+    /// The grid of slices at these whole steps of it.
+    fn with_missing(steps: &[usize], span: f64, filling: Filling) -> Self {
+        let last = steps[steps.len() - 1];
+        let distance = span / last as f64;
+        let mut layers = Vec::with_capacity(last + 1);
+        let distances: Vec<f64> = steps.windows(2).map(|two| (two[1] - two[0]) as f64).collect();
+        let is_bridged = bridged(&distances, 1.0, filling);
+        let (mut interpolated, mut empty) = (0, 0);
+        for (slice, two) in steps.windows(2).enumerate() {
+            layers.push(Layer::Picture(slice));
+            let missing = two[1] - two[0] - 1;
+            let is_bridged = is_bridged[slice];
+            *(if is_bridged { &mut interpolated } else { &mut empty }) += missing;
+            for step in 1..=missing {
+                let share = step as f64 / (missing + 1) as f64;
+                layers.push(if is_bridged {
+                    Layer::Between { pictures: [slice, slice + 1], share, is_missing: true }
+                } else {
+                    Layer::Empty
+                });
+            }
+        }
+        layers.push(Layer::Picture(steps.len() - 1));
+        let missing = interpolated + empty;
+        let remark = (missing > 0 && filling != Filling::NoSegment).then(|| {
+            let made = match (filling, interpolated, empty) {
+                (Filling::Means, _, 0) => "interpolated between those beside them".to_owned(),
+                (Filling::Means, 0, _) => "left empty".to_owned(),
+                (Filling::Means, ..) => {
+                    format!("{interpolated} interpolated between those beside them, {empty} in longer gaps left empty")
+                }
+                _ => "filled with the nearest".to_owned(),
+            };
+            let are = if missing == 1 { "slice is" } else { "slices are" };
+            format!("{missing} {are} missing of {}, {} apart: {made}", last + 1, length(distance))
+        });
+        Self { layers, distance, remark }
+    }
+}
+
+/// A length in words, however long.
+fn length(length_mm: f64) -> String {
+    let is_usual = (1e-3..1e6).contains(&length_mm);
+    if is_usual { format!("{length_mm:.4} mm") } else { format!("{length_mm:e} mm") }
+}
+
+/// The steps from the first slice to each, where all lie on an even grid of about this distance.
+fn whole_steps(places: &[f64], distance: f64, most: usize) -> Option<Vec<usize>> {
+    let first = places[0];
+    let span = places[places.len() - 1] - first;
+    if !(distance > 0.0 && span.is_finite() && span / distance < most as f64) {
+        return None;
+    }
+    // Step by step, so that an error of the distance does not add up.
+    let mut steps = vec![0];
+    for two in places.windows(2) {
+        let step = ((two[1] - two[0]) / distance).round();
+        if step < 1.0 {
+            return None;
+        }
+        steps.push(steps[steps.len() - 1] + step as usize);
+    }
+    let last = steps[steps.len() - 1];
+    let is_about_said = |found: f64| (found / distance - 1.0).abs() <= MOST_OFF;
+    let distance = Some(span / last as f64).filter(|&found| is_about_said(found))?;
+    let is_near =
+        |(place, step): (&f64, &usize)| (place - first - *step as f64 * distance).abs() <= EVEN * distance;
+    (last < most && places.iter().zip(&steps).all(is_near)).then_some(steps)
+}
+
+/// Whether each distance is one across which values are interpolated: no longer than usual ones by much, or by much
+/// longer than those beside it.
+fn bridged(distances: &[f64], usual: f64, filling: Filling) -> Vec<bool> {
+    if filling != Filling::Means {
+        return vec![true; distances.len()];
+    }
+    let longest = MOST_BRIDGED + 1.5;
+    let is_bridged = |at: usize| {
+        let beside =
+            [at.checked_sub(1), Some(at + 1)].into_iter().flatten().filter_map(|at| distances.get(at));
+        let beside = beside.copied().fold(usual, f64::max);
+        distances[at] < longest * beside
+    };
+    (0..distances.len()).map(is_bridged).collect()
+}
+
+/// The layer at a place between the first and the last slice.
+fn at_place(places: &[f64], place: f64, distance: f64, is_bridged: &[bool]) -> Layer {
+    let above = places.partition_point(|slice| *slice < place).clamp(1, places.len() - 1);
+    let [low, high] = [places[above - 1], places[above]];
+    // As good as at a slice: that is sharper than a mean.
+    if place - low <= EVEN * distance {
+        return Layer::Picture(above - 1);
+    } else if high - place <= EVEN * distance {
+        return Layer::Picture(above);
+    } else if !is_bridged[above - 1] {
+        return Layer::Empty;
+    }
+    Layer::Between { pictures: [above - 1, above], share: (place - low) / (high - low), is_missing: false }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid(places: &[f64]) -> SliceGrid {
+        SliceGrid::new(places, Filling::Means, None)
+    }
+
+    fn between(low: usize, share: f64, is_missing: bool) -> Layer {
+        Layer::Between { pictures: [low, low + 1], share, is_missing }
+    }
+
+    #[test]
+    fn even_slices_are_layers() {
+        let even = grid(&[1.0, 3.0, 5.04, 7.0]);
+        assert_eq!(even.layers, [0, 1, 2, 3].map(Layer::Picture));
+        assert_eq!((even.distance, even.remark), (2.0, None));
+        assert_eq!(grid(&[1.0, 4.0]).distance, 3.0);
+    }
+
+    #[test]
+    fn a_missing_slice_keeps_the_others_at_their_places() {
+        let found = grid(&[0.0, 2.0, 4.0, 8.0, 10.0]);
+        let picture = Layer::Picture;
+        let expected = [picture(0), picture(1), picture(2), between(2, 0.5, true), picture(3), picture(4)];
+        assert_eq!((found.layers, found.distance), (expected.to_vec(), 2.0));
+        assert!(found.remark.unwrap().starts_with("1 slice is missing of 6, 2.0000 mm apart: interpolated"));
+        // Of three slices the shorter distance counts.
+        assert_eq!(
+            grid(&[0.0, 4.0, 6.0]).layers,
+            [picture(0), between(0, 0.5, true), picture(1), picture(2)]
+        );
+    }
+
+    #[test]
+    fn long_gaps_are_left_empty() {
+        let places: Vec<f64> = (0..5).chain(12..15).chain(17..20).map(f64::from).collect();
+        let found = grid(&places);
+        assert_eq!(found.layers.len(), 20);
+        for (at, layer) in found.layers.iter().enumerate() {
+            let is_there = places.contains(&(at as f64));
+            assert_eq!(matches!(layer, Layer::Picture(_)), is_there, "{at}");
+            assert_eq!(*layer == Layer::Empty, (5..12).contains(&at), "{at}");
+        }
+        assert!(found.remark.unwrap().contains("9 slices are missing of 20"));
+        // Where all slices of a part lie far apart, there is no gap.
+        let thick = grid(&[0.0, 1.0, 2.0, 3.0, 4.0, 10.0, 16.0, 22.0]);
+        assert!(!thick.layers.contains(&Layer::Empty), "{:?}", thick.layers);
+        assert_eq!(thick.layers.len(), 23);
+    }
+
+    #[test]
+    fn uneven_slices_are_interpolated() {
+        let found = grid(&[0.0, 1.0, 2.4]);
+        assert_eq!(found.distance, 1.2);
+        assert_eq!(found.layers[0], Layer::Picture(0));
+        let Layer::Between { pictures: [1, 2], share, .. } = found.layers[1] else {
+            panic!("{:?}", found.layers)
+        };
+        assert!((share - 0.2 / 1.4).abs() < 1e-12);
+        assert!(found.remark.unwrap().contains("1.0000 to 1.4000 mm apart"));
+    }
+
+    #[test]
+    fn grids_are_bounded() {
+        for places in
+            [&[0.0, 1.0, 1e9][..], &[0.0, 1e-300, 1.0], &[-1e308, 0.0, 1e308], &[0.0, 1e308, 1.7e308]]
+        {
+            let found = grid(places);
+            assert!(found.layers.len() <= 4 * 3 + MORE_LAYERS, "{places:?}: {}", found.layers.len());
+            assert!(found.distance > 0.0);
+        }
+        let segments = SliceGrid::new(&[0.0, 1.0, 1e9], Filling::NoSegment, Some(1e-9));
+        assert!(segments.layers.len() <= MOST_LAYERS_OF_SEGMENTS);
+    }
+
+    #[test]
+    fn segments_lie_at_the_distance_that_is_said() {
+        let found = SliceGrid::new(&[3.0, 9.0], Filling::NoSegment, Some(2.0));
+        assert_eq!((found.layers.len(), found.distance, found.remark), (4, 2.0, None));
+        let wrong = SliceGrid::new(&[3.0, 9.0], Filling::NoSegment, Some(3.5));
+        assert_eq!((wrong.layers.len(), wrong.distance), (2, 6.0));
+    }
+}

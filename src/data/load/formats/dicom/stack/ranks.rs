@@ -1,0 +1,107 @@
+//! Pictures of the same places that no attribute tells apart for all of them: by their order at each place, or in the
+//! order in which they were taken.
+
+use std::cmp::Ordering;
+
+use super::places::{Places, Pose};
+use crate::data::load::formats::dicom::header::taken::{Attribute, Taken};
+
+/// Which of two pictures of one place comes first: the first attribute in which they differ decides.
+pub(crate) fn by_time(a: &Taken, b: &Taken) -> Ordering {
+    let compared = Attribute::ALL.into_iter().map(|attribute| {
+        let [a, b] = [a, b].map(|taken| taken.get(attribute).unwrap_or(0.0));
+        a.total_cmp(&b)
+    });
+    compared.into_iter().find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
+}
+
+/// The first picture of each place, the second, and so on. Where some places have fewer pictures, those are of the
+/// nearest times; `None` where there are no times that say that.
+pub(crate) fn by_rank(places: &Places, poses: &[Pose]) -> Option<Vec<Vec<usize>>> {
+    let mut sorted = places.0.clone();
+    for place in &mut sorted {
+        place.sort_by(|&a, &b| by_time(&poses[a].taken, &poses[b].taken));
+    }
+    let count = places.most_at_one();
+    if sorted.iter().all(|place| place.len() == count) {
+        return Some((0..count).map(|rank| sorted.iter().map(|place| place[rank]).collect()).collect());
+    }
+    [Attribute::TriggerTime, Attribute::ReferenceTime]
+        .into_iter()
+        .find_map(|attribute| by_nearest_time(&sorted, count, poses, attribute))
+}
+
+/// As [`by_rank`], by a time that begins anew at each place.
+fn by_nearest_time(
+    places: &[Vec<usize>],
+    count: usize,
+    poses: &[Pose],
+    attribute: Attribute,
+) -> Option<Vec<Vec<usize>>> {
+    let time = |picture: usize| poses[picture].taken.get(attribute);
+    let mut places: Vec<Vec<(f64, usize)>> = places
+        .iter()
+        .map(|place| {
+            let timed = place.iter().map(|&picture| Some((time(picture)?, picture)));
+            timed.collect::<Option<Vec<(f64, usize)>>>()
+        })
+        .collect::<Option<_>>()?;
+    for place in &mut places {
+        place.sort_by(|a, b| a.0.total_cmp(&b.0));
+    }
+    let usual = |rank: usize| {
+        let whole = places.iter().filter(|place| place.len() == count);
+        let mut times: Vec<f64> = whole.map(|place| place[rank].0).collect();
+        times.sort_by(f64::total_cmp);
+        times[times.len() / 2]
+    };
+    let usual: Vec<f64> = (0..count).map(usual).collect();
+    let is_rising = usual.windows(2).all(|two| two[0] < two[1]);
+    let mut ranks = vec![Vec::new(); count];
+    for place in &places {
+        let mut least = 0;
+        for (at, &(time, picture)) in place.iter().enumerate() {
+            // Those behind it need ranks, too.
+            let most = count - (place.len() - at);
+            let distance = |rank: &usize| (usual[*rank] - time).abs();
+            let rank = (least..=most).min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+            ranks[rank].push(picture);
+            least = rank + 1;
+        }
+    }
+    is_rising.then_some(ranks)
+}
+
+/// Pictures in the order of their instance numbers, a new volume where a place comes again; `None` where that makes
+/// more volumes than pictures of one place, or pieces of them.
+pub(crate) fn by_turn(places: &Places, poses: &[Pose]) -> Option<Vec<Vec<usize>>> {
+    let mut pictures = Vec::new();
+    for (place, at_place) in places.0.iter().enumerate() {
+        for &picture in at_place {
+            pictures.push((poses[picture].taken.get(Attribute::Instance)?, place, picture));
+        }
+    }
+    pictures.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let count = places.most_at_one();
+    let mut turns: Vec<Vec<(usize, usize)>> = vec![Vec::new()];
+    let mut last_turn = vec![0; places.len()];
+    for (_, place, picture) in pictures {
+        if last_turn[place] == turns.len() {
+            if turns.len() == count {
+                return None;
+            }
+            turns.push(Vec::new());
+        }
+        last_turn[place] = turns.len();
+        if let Some(turn) = turns.last_mut() {
+            turn.push((place, picture));
+        }
+    }
+    if turns.iter().any(|turn| 2 * turn.len() <= places.len()) {
+        return None;
+    }
+    for turn in &mut turns {
+        turn.sort_unstable();
+    }
+    Some(turns.into_iter().map(|turn| turn.into_iter().map(|(_, picture)| picture).collect()).collect())
+}
