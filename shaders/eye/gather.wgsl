@@ -10,6 +10,7 @@
 #import "density/kernel_gradient.wgsl"
 #import "sheets/tiles.wgsl"
 #import "eye/slabs_by_need.wgsl"
+#import "eye/preintegrated_slabs.wgsl"
 
 // r: distance to the nearest cell that the eye's transfer function shows.
 @group(0) @binding(2) var distances: texture_3d<f32>;
@@ -22,6 +23,7 @@
 // Take gradients from neighbouring sheets.
 override SHEET_GRADIENTS: bool = false;
 // BY_NEED: slabs are as thin as they need to be (slabs_by_need.wgsl).
+// PREINTEGRATED: opacity is integrated through steps, several of which are shaded once (preintegrated_slabs.wgsl).
 
 // Extinctions of the volume as rays to lights find them.
 fn ray_extinction(frame: SheetFrame, ray: Ray, k: f32) -> Left {
@@ -206,7 +208,11 @@ fn main(
 #if BY_NEED
     let seen = slabs_by_need(ray, span, inside);
 #else
+#if PREINTEGRATED
+    let seen = preintegrated_slabs(ray, span, inside);
+#else
     let seen = even_slabs(ray, span, inside, pixel);
+#endif
 #endif
     textureStore(picture, pixel, vec4f(seen.color, 1.0 - seen.left));
 }

@@ -36,7 +36,8 @@ pub use self::settings::light::{Cone, Hood, Light, LightKind, LightLock, MAX_LIG
 pub use self::settings::quality::Quality;
 pub use self::settings::range::DensityRange;
 pub use self::settings::sampling::{
-    Classification, Engine, Gradients, Kernel, Quadrature, Sampling, SheetOrder, Slabs, THIN_SLABS,
+    Classification, Engine, Gradients, Kernel, PREINTEGRATED_STEPS, Quadrature, Sampling, SheetOrder, Slabs,
+    THIN_SLABS,
 };
 pub use self::settings::shadows::{
     AreaShadows, Deposit, LightStorage, MAX_BIAS_VOXELS, MAX_LEAST_BLOCKS, MAX_LIGHT_SAMPLES, NearField,

@@ -213,13 +213,29 @@ impl<'r> Stack<'r> {
     /// The density with the GPU's weights in the middle of slab `k` on the ray of pixel (i, j); 0 outside the
     /// volume's support.
     pub(super) fn density_at(&self, at: [f64; 3]) -> f64 {
-        let Self { reference, frame, side, profile, quadrature, .. } = self;
         if self.material_at(at).is_none() {
             return 0.0;
         }
+        self.density_around(at)
+    }
+
+    /// As [`Self::density_at`], and outside the volume's support as it goes on there.
+    pub(super) fn density_around(&self, at: [f64; 3]) -> f64 {
+        let Self { reference, frame, side, profile, quadrature, .. } = self;
         gather::slab_mean(reference, frame, *quadrature, at, |point, level| {
             gather::density(reference, *side, profile, point, level)
         })
+    }
+
+    /// How much of a ray's length in scene units remains between the middles of two neighbouring slabs; nothing if the
+    /// farther one lies outside the volume's support.
+    pub(super) fn length_between(&self, [from, to]: [[f64; 3]; 2]) -> f64 {
+        if self.material_at(to).is_none() {
+            return 0.0;
+        }
+        let middle = std::array::from_fn(|axis| 0.5 * (from[axis] + to[axis]));
+        let point = self.frame.point(middle[0], middle[1], self.frame.depth_of(middle[2]));
+        self.length_of(middle, 1.0, point)
     }
 
     /// A pixel's column and row.

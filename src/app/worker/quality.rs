@@ -50,9 +50,9 @@ impl QualityLevel {
         }
         if self.quick_eye {
             settings.sampling.kernel = Kernel::Prefiltered;
-            // Even ones are quicker.
+            // Thin parts would show stripes in even ones as thick.
             let slab = settings.mean_slab();
-            settings.sampling.slabs = Slabs::Even;
+            settings.sampling.slabs = Slabs::Preintegrated;
             settings.sampling.slab = preview_slab(&settings.camera, scene, self.size(viewport), slab);
         }
         if self.quick_light {
@@ -267,6 +267,18 @@ mod tests {
     }
 
     const ONE: Missing = Missing { count: 1, others: false };
+
+    #[test]
+    fn quick_previews_have_preintegrated_slabs() {
+        let scene = SceneSpace::new([64; 3], glam::DAffine3::IDENTITY);
+        let look = Settings::default();
+        let sampling = |quick_eye| {
+            let quality = QualityLevel { scale: 4, quick_eye, ..QualityLevel::FULL };
+            quality.settings(&look, &scene, [940, 720]).sampling
+        };
+        assert_eq!((sampling(true).slabs, sampling(true).slab), (Slabs::Preintegrated, 1.0));
+        assert_eq!(sampling(false), look.sampling);
+    }
 
     #[test]
     fn a_fast_card_previews_at_full_quality() {

@@ -188,6 +188,8 @@ pub(crate) struct GatherVariant {
     sampling: SamplingVariant,
     /// Slabs are as thin as they need to be.
     by_need: bool,
+    /// Opacity is integrated between the densities at both ends of steps.
+    preintegrated: bool,
     /// Normals are those of the kernel.
     kernel_gradients: bool,
     shading: ShadingVariant,
@@ -234,6 +236,7 @@ impl GatherVariant {
             },
             kernel_gradients: settings.has_kernel_gradients(),
             by_need: settings.has_slabs_by_need(),
+            preintegrated: settings.has_preintegrated_slabs(),
             shading: ShadingVariant {
                 lights,
                 is_combined: false,
@@ -280,6 +283,7 @@ impl Variant for GatherVariant {
         constants.extend([
             flag("STRETCH", self.is_stretched),
             flag("BY_NEED", self.by_need),
+            flag("PREINTEGRATED", self.preintegrated),
             flag("KERNEL_GRADIENTS", self.kernel_gradients),
             flag("DIRECT", self.rays.is_some()),
         ]);

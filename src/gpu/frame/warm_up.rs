@@ -16,7 +16,8 @@ use crate::model::{ClipPlane, Cuts, Kernel, Sampling, Settings, Shadows, Slabs};
 const FIRST_LIGHTS: LightCount = LightCount { all: 2, shadowed: 1 };
 
 /// Kernels and slabs of previews and of pictures.
-const LOOKS: [(Kernel, Slabs); 2] = [(Kernel::Prefiltered, Slabs::Even), (Kernel::BSpline, Slabs::ByNeed)];
+const LOOKS: [(Kernel, Slabs); 2] =
+    [(Kernel::Prefiltered, Slabs::Preintegrated), (Kernel::BSpline, Slabs::ByNeed)];
 
 impl ShaderLibrary {
     /// Makes the usual variants of every shader, until `stop`. To be called on a thread of its own.

@@ -8,12 +8,13 @@
 use crate::gpu::GpuError;
 
 /// Names that stand in conditions alone, which drivers are not told.
-const TEXT_ALONE: [&str; 11] = [
+const TEXT_ALONE: [&str; 12] = [
     "FACES",
     "MISSING",
     "PRECLASSIFY",
     "DIRECT",
     "BY_NEED",
+    "PREINTEGRATED",
     "KERNEL_GRADIENTS",
     "SKY",
     "BOUNCES",

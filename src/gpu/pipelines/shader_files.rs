@@ -40,6 +40,7 @@ pub const SHADERS: &[(&str, &str)] = shader_files![
     "density/volume.wgsl",
     "eye/floor.wgsl",
     "eye/gather.wgsl",
+    "eye/preintegrated_slabs.wgsl",
     "eye/slabs_by_need.wgsl",
     "light/average.wgsl",
     "light/backproject.wgsl",

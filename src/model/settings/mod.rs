@@ -277,9 +277,19 @@ impl Settings {
     /// holds much: not where gradients come from sheets, or voxels are classified; and where a slab is a mean of two
     /// points it need not be.
     pub fn has_slabs_by_need(&self) -> bool {
-        let Sampling { slabs, quadrature, gradients, .. } = self.sampling;
-        slabs == Slabs::ByNeed
-            && !self.scatters()
+        self.sampling.slabs == Slabs::ByNeed && self.can_divide_slabs()
+    }
+
+    /// Whether opacity is integrated through the eye's slabs from the densities at both ends of their steps: under the
+    /// conditions of [`Self::has_slabs_by_need`]; else slabs are even.
+    pub fn has_preintegrated_slabs(&self) -> bool {
+        self.sampling.slabs == Slabs::Preintegrated && self.can_divide_slabs()
+    }
+
+    /// Whether densities at single points of the volume say what is seen of it.
+    fn can_divide_slabs(&self) -> bool {
+        let Sampling { quadrature, gradients, .. } = self.sampling;
+        !self.scatters()
             && quadrature == Quadrature::One
             && gradients != Gradients::Sheets
             && self.classification() == Classification::Post
@@ -307,7 +317,7 @@ impl Settings {
     /// cost, and err, as halves of the thickest do.
     pub fn mean_slab(&self) -> f64 {
         match self.sampling.slabs {
-            Slabs::Even => self.sampling.slab,
+            Slabs::Even | Slabs::Preintegrated => self.sampling.slab,
             Slabs::ByNeed => 0.5 * self.sampling.slab,
         }
     }

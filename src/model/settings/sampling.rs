@@ -97,7 +97,14 @@ pub enum Slabs {
     /// A quarter of that where a slab would make up much of what is seen along a ray: normals and light
     /// change within a voxel, which would show as a weave.
     ByNeed,
+    /// As thick as [`Sampling::slab`] says, with opacity integrated through each of its [`PREINTEGRATED_STEPS`] from the
+    /// densities at both ends (Engel, Kraus and Ertl, "High-quality pre-integrated volume rendering", 2001), and
+    /// shaded once where that opacity lies: quick previews of thin parts without stripes.
+    Preintegrated,
 }
+
+/// Steps into which a slab is divided along a ray where opacity is pre-integrated.
+pub const PREINTEGRATED_STEPS: u32 = 2;
 
 /// Parts into which a slab is divided at most, where slabs are as thin as they need to be.
 pub const THIN_SLABS: u32 = 4;

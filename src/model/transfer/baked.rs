@@ -12,6 +12,8 @@ pub struct BakedTransfer {
     pub sides: Vec<f32>,
     /// For each power of two up to [`LUT_SIZE`], for each entry the largest extinction of so many entries from there on.
     pub peaks: Vec<f32>,
+    /// For each entry the integral of extinction over densities from 0 to its own, where entries are 1 apart.
+    pub integrals: Vec<f32>,
 }
 
 /// How far, in entries, a change of extinction says to which side it falls: a step of 8-bit data.
@@ -53,10 +55,20 @@ fn peaks(entries: &[[f32; 4]]) -> Vec<f32> {
     runs
 }
 
+/// Integrals of extinction, linear between entries, from the first to each.
+fn integrals(entries: &[[f32; 4]]) -> Vec<f32> {
+    let mut sum = 0.0_f64;
+    let steps = entries.windows(2).map(|pair| {
+        sum += 0.5 * (f64::from(pair[0][3]) + f64::from(pair[1][3]));
+        sum as f32
+    });
+    std::iter::once(0.0).chain(steps).collect()
+}
+
 impl BakedTransfer {
     /// A table of [`LUT_SIZE`] entries.
     pub(super) fn new(entries: Vec<[f32; 4]>) -> Self {
-        Self { sides: sides(&entries), peaks: peaks(&entries), entries }
+        Self { sides: sides(&entries), peaks: peaks(&entries), integrals: integrals(&entries), entries }
     }
 
     /// Extinctions that rise evenly from nothing to the largest, of no colour of their own: those of shares of it.
@@ -67,7 +79,8 @@ impl BakedTransfer {
 
     /// All numbers one after the other, as shaders declare them (`density/table.wgsl`).
     pub(crate) fn numbers(&self) -> Vec<f32> {
-        self.entries.iter().flatten().chain(&self.sides).chain(&self.peaks).copied().collect()
+        let Self { entries, sides, peaks, integrals } = self;
+        entries.iter().flatten().chain(sides).chain(peaks).chain(integrals).copied().collect()
     }
 
     /// The largest extinction of any density, per scene unit.

@@ -4,7 +4,7 @@ use glam::{DMat3, DVec2};
 
 use super::sheet_frame::{Placement, SheetFrame};
 use crate::math::SceneSpace;
-use crate::model::{Camera, Projection, Settings, THIN_SLABS};
+use crate::model::{Camera, PREINTEGRATED_STEPS, Projection, Settings, THIN_SLABS};
 use crate::plan::PixelWindow;
 
 /// Most slabs at a thickness of 1: more than the diagonal of a volume of 2048³ voxels, and few enough
@@ -32,10 +32,17 @@ pub fn preview_slab(camera: &Camera, scene: &SceneSpace, size: [u32; 2], slab: f
     slab.max((PREVIEW_SHARE * width).clamp(1.0, THICKEST_PREVIEW))
 }
 
-/// The sheets of a picture with some settings: the thinnest, if slabs are as thin as they need to be.
+/// The sheets of a picture with some settings: the thinnest, if slabs are as thin as they need to be, and of
+/// pre-integrated slabs their steps.
 pub fn picture_frame(settings: &Settings, scene: &SceneSpace, window: impl Into<PixelWindow>) -> SheetFrame {
     let frame = eye_frame(&settings.camera, scene, window, settings.thickest_slab());
-    if settings.has_slabs_by_need() { frame.divided(THIN_SLABS) } else { frame }
+    if settings.has_slabs_by_need() {
+        frame.divided(THIN_SLABS)
+    } else if settings.has_preintegrated_slabs() {
+        frame.divided(PREINTEGRATED_STEPS)
+    } else {
+        frame
+    }
 }
 
 /// The sheets that a camera sees, `slab` smallest voxel edges thick.

@@ -70,6 +70,21 @@ fn slabs_by_need() {
 }
 
 #[test]
+fn preintegrated_slabs() {
+    let mut settings = scenes::look();
+    settings.sampling.slabs = Slabs::Preintegrated;
+    settings.sampling.kernel = Kernel::Prefiltered;
+    check("pre-integrated slabs", DVec3::ONE, &settings);
+    settings.sampling.slab = 1.6;
+    settings.camera.distance = 9.0;
+    check("pre-integrated slabs, stretched", DVec3::new(1.0, 0.8, 1.6), &settings);
+    settings = Settings { camera: scenes::look().camera, ..settings };
+    settings.cuts.plane =
+        ClipPlane { on: true, normal: [0.6, -1.0, 0.7], offset: 0.17, ..ClipPlane::default() };
+    check("pre-integrated slabs, cut", DVec3::ONE, &settings);
+}
+
+#[test]
 fn gaussian_kernel_thin_slabs_two_points() {
     let mut settings = scenes::look();
     settings.sampling.kernel = Kernel::Gaussian { sigma: 0.6 };

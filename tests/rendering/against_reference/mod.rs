@@ -18,6 +18,7 @@ mod gather;
 mod labels;
 mod limit;
 pub(crate) mod mutations;
+mod preintegrated;
 mod presence;
 mod scatter;
 mod sky;

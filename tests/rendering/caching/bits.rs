@@ -42,6 +42,8 @@ fn looks() -> Vec<Settings> {
     looks.push(inside);
     let mut by_need = scenes::look();
     by_need.sampling.slabs = Slabs::ByNeed;
+    looks.push(by_need.clone());
+    by_need.sampling.slabs = Slabs::Preintegrated;
     looks.push(by_need);
     let mut biased = scenes::look();
     biased.shadows.bias_voxels = 2.0;

@@ -8,9 +8,9 @@ mod sky;
 use super::binding::{Access, Format, Shape, Slot};
 use super::uniforms;
 
-/// A lookup table: [`crate::model::LUT_SIZE`] times sixteen floats, of which four are an entry, one its side, and eleven
-/// the largest extinctions of runs.
-const TABLE_BYTES: u64 = crate::model::LUT_SIZE as u64 * 16 * 4;
+/// A lookup table: [`crate::model::LUT_SIZE`] times seventeen floats, of which four are an entry, one its side, eleven
+/// the largest extinctions of runs, and one the integral of extinction up to it.
+const TABLE_BYTES: u64 = crate::model::LUT_SIZE as u64 * 17 * 4;
 
 /// Pairs of floats in a table of footprints, as `scatter/footprint.wgsl` declares it.
 const FOOTPRINT_TABLE_BYTES: u64 = 512 * 8;

@@ -197,6 +197,7 @@ fn every_setting_causes_what_the_design_says() {
         ("sampling.kernel", "prefiltered", Effect::Eye),
         ("sampling.slab", "0.5", Effect::Eye),
         ("sampling.slabs", "by_need", Effect::Eye),
+        ("sampling.slabs", "preintegrated", Effect::Eye),
         ("sampling.quadrature", "two", Effect::Eye),
         ("sampling.gradients", "sheets", Effect::Eye),
         ("sampling.classification", "pre", Effect::AllLights),

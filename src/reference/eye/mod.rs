@@ -1,5 +1,7 @@
 //! The picture: sheets composited front to back as seen from the eye (P eq. 9).
 
+mod preintegrated;
+
 use std::ops::Range;
 
 use glam::{DMat3, DVec3};
@@ -45,6 +47,9 @@ impl Reference<'_> {
         let shader = Shader::new(self, attenuations);
         if self.settings.has_slabs_by_need() {
             return self.picture_by_need(&stack, &shader);
+        }
+        if self.settings.has_preintegrated_slabs() {
+            return self.picture_preintegrated(&stack, &shader);
         }
         // Colour so far, and in place of alpha the transmittance.
         let mut rays = vec![[0.0, 0.0, 0.0, 1.0]; stack.pixel_count()];

@@ -1,0 +1,149 @@
+// Slabs in two steps, through which opacity is integrated from the densities at both ends (Engel, Kraus and Ertl,
+// "High-quality pre-integrated volume rendering using hardware-accelerated pixel shading", 2001), and which are shaded in
+// layers: several steps once, where along the ray their opacity lies. What a thin part shows hardly depends on where
+// samples meet it. The slabs of the frame are as thick as steps, which reach from the middle of one to that of the next.
+#import "density/cells.wgsl"
+#import "density/classify.wgsl"
+
+// Steps of a layer behind which it ends: two slabs. A step costs little beside shading.
+const LAYER_STEPS = 4;
+
+// It ends a step earlier where material is softer than this, in optical depth of its last step: light changes little
+// within a surface that is opaque after a voxel, and more within what is not.
+const SOFT = 0.5;
+
+// Steps count from where a layer shows more than this share of the ray: 4 of 255, too little to be shaded by itself.
+const FAINT = 0.015625;
+
+// Optical depth of a step that shows nothing: a thousandth of what 8 bits can.
+const EMPTY = 4e-6;
+
+// The integral of extinction over densities up to one, as a position in the table.
+fn extinction_integral(at: f32) -> f32 {
+    let low = min(u32(at), TABLE_SIZE - 2u);
+    return mix(table.integrals[low], table.integrals[low + 1u], at - f32(low));
+}
+
+// An end of a step.
+struct StepEnd {
+    density: f32,
+    // As a position in the table …
+    entry: f32,
+    // … and extinction integrated up to there.
+    integral: f32,
+    // The share of the material that is there.
+    there: f32,
+}
+
+fn step_end(ray: Ray, k: i32) -> StepEnd {
+    let depth = depth_of(eye.frame, f32(k));
+    let p = ray.origin + ray.direction * depth;
+    let level = kernel_level(eye.frame, depth);
+    let found = density(p, level);
+    let entry = clamp(found, 0.0, 1.0) * f32(TABLE_SIZE - 1u);
+    return StepEnd(found, entry, extinction_integral(entry), presence_at(p, level));
+}
+
+// Steps that are shaded at once.
+struct Layer {
+    // Of what is seen along the ray.
+    share: f32,
+    // Sums of shares times places, in slabs of the frame, …
+    places: f32,
+    // … and of shares times densities.
+    densities: f32,
+    // Transmittance of the ray behind it.
+    left: f32,
+    // Optical depth of its last step.
+    last_depth: f32,
+}
+
+// How far behind the front of even material of an optical depth the mean place lies of what is seen of it, as a share of
+// its thickness: 1/τ − 1/(e^τ − 1), within 0.011.
+fn mean_place(tau: f32) -> f32 {
+    return (6.0 + tau) / (12.0 + tau * (4.0 + tau));
+}
+
+// A layer with one more step, from k to the next, along which density is linear; `length`: of the ray within it.
+fn with_step(layer: Layer, a: StepEnd, b: StepEnd, k: i32, length: f32) -> Layer {
+    let middle = 0.5 * (a.density + b.density);
+    let entry = 0.5 * (a.entry + b.entry);
+    let integral = extinction_integral(entry);
+    let half = entry - a.entry;
+    // Integrals are linear between entries, and differences of close ones are rounding.
+    let is_even = abs(half) < 1.0;
+    let per_half = 1.0 / select(half, 1.0, is_even);
+    let alike = table.entries[nearest_entry(middle)].a;
+    let there = 0.25 * length * (a.there + b.there);
+    let front = there * select((integral - a.integral) * per_half, alike, is_even);
+    let back = there * select((b.integral - integral) * per_half, alike, is_even);
+    let behind_front = layer.left * exp(-front);
+    let behind_back = behind_front * exp(-back);
+    let by_front = layer.left - behind_front;
+    let by_back = behind_front - behind_back;
+    let place = f32(k);
+    return Layer(
+        layer.share + by_front + by_back,
+        layer.places + by_front * (place + 0.5 * mean_place(front)) + by_back * (place + 0.5 + 0.5 * mean_place(back)),
+        layer.densities + by_front * 0.5 * (a.density + middle) + by_back * 0.5 * (middle + b.density),
+        behind_back,
+        front + back,
+    );
+}
+
+// What a ray shows between slabs of the frame, the first and the last inside.
+fn preintegrated_slabs(ray: Ray, span: vec2f, inside: vec2i) -> Seen {
+    let walk = walk_along(eye.frame, ray);
+    // What is cut may end behind the middle of the last slab.
+    let last = inside.y + select(0, 1, CUT);
+    let step_length = eye.frame.slab * ray.obliquity;
+    // Steps begin at the slab before one that may show something.
+    var k = next_seen(walk, inside.x, last) - 1;
+    var before = StepEnd(0.0, 0.0, 0.0, 0.0);
+    // Whether the density of slab k is not known yet.
+    var has_leapt = true;
+    var color = vec3f(0.0);
+    var t = 1.0;
+    loop {
+        if (k >= last) {
+            break;
+        }
+        var layer = Layer(0.0, 0.0, 0.0, t, 0.0);
+        var steps = 0;
+        // All lanes of a vector wait for the slowest, but shading takes as long as several steps.
+        loop {
+            let at = select(k + 1, k, has_leapt);
+            let end = step_end(ray, at);
+            let slab = eye.frame.slab;
+            let depth = depth_of(eye.frame, f32(at) - 0.5);
+            let length = select(step_length, 0.0, has_leapt) * share_within(span, depth, slab);
+            layer = with_step(layer, before, end, at - 1, length);
+            let is_empty = layer.last_depth < EMPTY;
+            steps += select(0, 1, layer.share > FAINT);
+            k = at;
+            before = end;
+            let seen = next_seen(walk, k + 1, last);
+            has_leapt = is_empty && seen > k + 1;
+            k = select(k, seen - 1, has_leapt);
+            // What lies behind a gap is shaded by itself.
+            let is_whole = steps >= select(LAYER_STEPS, LAYER_STEPS - 1, layer.last_depth < SOFT);
+            if (is_whole || layer.left < eye.dark || k >= last || (is_empty && layer.share > 0.0)) {
+                break;
+            }
+        }
+        t = layer.left;
+        if (layer.share > 0.0) {
+            let depth = depth_of(eye.frame, layer.places / layer.share);
+            let dense = layer.densities / layer.share;
+            let p = ray.origin + ray.direction * depth;
+            let level = kernel_level(eye.frame, depth);
+            let slope = gradient_to_scene(eye.space, slope_at(p, level));
+            let found = SlabSample(classify(dense), dense, 1.0);
+            color += layer.share * lit_material(p, level, slope, presence_slope(p, level), found);
+        }
+        if (t < eye.dark) {
+            break;
+        }
+    }
+    return Seen(color, t);
+}

@@ -1,0 +1,164 @@
+//! The picture in slabs of two steps, through which opacity is integrated and which are shaded in layers.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::model::{BakedTransfer, LUT_SIZE};
+use crate::reference::Reference;
+use crate::reference::shade::{Sampled, Shader};
+use crate::reference::sheet::Stack;
+
+/// Steps of a layer behind which it ends.
+const LAYER_STEPS: u32 = 4;
+
+/// Optical depth of its last step below which it ends a step earlier.
+const SOFT: f64 = 0.5;
+
+/// Share of a ray above which the steps of a layer count.
+const FAINT: f64 = 1.0 / 64.0;
+
+/// Optical depth of a step that shows nothing.
+const EMPTY: f64 = 4e-6;
+
+/// Steps that are shaded at once.
+struct Layer {
+    /// Of what is seen along the ray.
+    share: f64,
+    /// Sum of shares times places, in slabs of the stack.
+    places: f64,
+    /// Sum of shares times densities.
+    densities: f64,
+    /// Steps since it is more than faint.
+    steps: u32,
+}
+
+impl Layer {
+    const NOTHING: Self = Self { share: 0.0, places: 0.0, densities: 0.0, steps: 0 };
+
+    /// Adds the share that is seen of half a step which begins at a place.
+    fn add(&mut self, share: f64, place: f64, half: Half) {
+        let Half { depth, density } = half;
+        // The quotient approximates 1/τ − 1/(e^τ − 1), the mean place of what is seen of even material.
+        let within = (6.0 + depth) / (12.0 + depth * (4.0 + depth));
+        self.share += share;
+        self.places += share * (place + 0.5 * within);
+        self.densities += share * density;
+    }
+}
+
+/// Half of a step.
+#[derive(Clone, Copy)]
+struct Half {
+    /// Optical depth.
+    depth: f64,
+    /// The mean of those at its ends.
+    density: f64,
+}
+
+/// A transfer function with its extinction integrated.
+struct Integrated {
+    table: BakedTransfer,
+    /// From the first entry to each, with entries 1 apart.
+    integrals: Vec<f64>,
+}
+
+impl Integrated {
+    fn new(table: BakedTransfer) -> Self {
+        let mut sum = 0.0;
+        let steps = table.entries.windows(2).map(|pair| {
+            sum += 0.5 * (f64::from(pair[0][3]) + f64::from(pair[1][3]));
+            sum
+        });
+        let integrals = std::iter::once(0.0).chain(steps).collect();
+        Self { table, integrals }
+    }
+
+    /// Mean extinction between two densities; of close ones, that of the entry nearest to `alike`.
+    fn mean(&self, from: f64, to: f64, alike: f64) -> f64 {
+        let [a, b] = [from, to].map(|density| density.clamp(0.0, 1.0) * (LUT_SIZE - 1) as f64);
+        if (b - a).abs() < 1.0 {
+            let nearest = (alike.clamp(0.0, 1.0) * (LUT_SIZE - 1) as f64).round() as usize;
+            return f64::from(self.table.entries[nearest][3]);
+        }
+        (self.up_to(b) - self.up_to(a)) / (b - a)
+    }
+
+    /// The integral up to a position in the table.
+    fn up_to(&self, at: f64) -> f64 {
+        let low = (at as usize).min(LUT_SIZE - 2);
+        let (first, second) = (self.integrals[low], self.integrals[low + 1]);
+        first + (second - first) * (at - low as f64)
+    }
+}
+
+impl Reference<'_> {
+    /// As [`Self::picture`], in layers of pre-integrated steps.
+    pub(super) fn picture_preintegrated(&self, stack: &Stack<'_>, shader: &Shader<'_>) -> Vec<[f64; 4]> {
+        let integrated = Integrated::new(self.settings.baked_eye(self.range, &self.scene));
+        let seen = |pixel: usize| self.layers(stack, shader, &integrated, pixel as u32);
+        (0..stack.pixel_count()).into_par_iter().map(seen).collect()
+    }
+
+    /// Composites the layers along the ray of a pixel: linear, premultiplied RGBA.
+    fn layers(
+        &self,
+        stack: &Stack<'_>,
+        shader: &Shader<'_>,
+        integrated: &Integrated,
+        pixel: u32,
+    ) -> [f64; 4] {
+        let [i, j] = stack.place_of(pixel);
+        let count = i64::from(stack.frame.slab_count);
+        let mut color = DVec3::ZERO;
+        let mut left = 1.0;
+        let mut layer = Layer::NOTHING;
+        // From the middle of a slab to that of the next.
+        for k in -1..=count {
+            let halves = self.halves(stack, integrated, [i, j, k as f64]);
+            for (number, half) in halves.into_iter().enumerate() {
+                let seen = left * -(-half.depth).exp_m1();
+                layer.add(seen, k as f64 + 0.5 * number as f64, half);
+                left -= seen;
+            }
+            layer.steps += u32::from(layer.share > FAINT);
+            let last_depth: f64 = halves.iter().map(|half| half.depth).sum();
+            let most = if last_depth < SOFT { LAYER_STEPS - 1 } else { LAYER_STEPS };
+            if layer.share > 0.0 && (layer.steps >= most || last_depth < EMPTY || k == count) {
+                color += self.shaded_layer(stack, shader, integrated, [i, j], &layer);
+                layer = Layer::NOTHING;
+            }
+        }
+        [color.x, color.y, color.z, 1.0 - left]
+    }
+
+    /// The halves of a step from the middle of slab `k` to that of the next.
+    fn halves(&self, stack: &Stack<'_>, integrated: &Integrated, [i, j, k]: [f64; 3]) -> [Half; 2] {
+        let ends = [[i, j, k], [i, j, k + 1.0]];
+        let length = stack.length_between(ends);
+        let [a, b] = ends.map(|end| stack.density_around(end));
+        let there = ends.map(|end| stack.presence_at(end)).iter().sum::<f64>() / 2.0;
+        let middle = 0.5 * (a + b);
+        [[a, middle], [middle, b]].map(|[from, to]| Half {
+            depth: 0.5 * length * there * integrated.mean(from, to, middle),
+            density: 0.5 * (from + to),
+        })
+    }
+
+    /// The light of a layer from where its opacity lies, times its share.
+    fn shaded_layer(
+        &self,
+        stack: &Stack<'_>,
+        shader: &Shader<'_>,
+        integrated: &Integrated,
+        [i, j]: [f64; 2],
+        layer: &Layer,
+    ) -> DVec3 {
+        let depth = stack.frame.depth_of(layer.places / layer.share);
+        let density = layer.densities / layer.share;
+        let (point, level) = (stack.frame.point(i, j, depth), stack.frame.stretch_level(depth));
+        let ends = self.ends(&self.faces(), point, level);
+        let gradient = shader.gradient(point, level) + ends * shader.turned(density);
+        let [r, g, b, _] = integrated.table.sample(density);
+        DVec3::from(shader.color(&Sampled { point, density, gradient, level }, [r, g, b])) * layer.share
+    }
+}
