@@ -4,8 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Right in front of words that people do not see in the window: names of things for the library of the window
-/// and of what the system sets, what developers read, and errors, which their types word.
-const NOT_SHOWN: [&str; 13] = [
+/// and of what the system sets and answers, what developers read, and errors, which their types word.
+const NOT_SHOWN: [&str; 15] = [
     "var_os(",
     "Id::unique(",
     "id_salt(",
@@ -13,12 +13,14 @@ const NOT_SHOWN: [&str; 13] = [
     "load_texture(",
     "advanced(ui,",
     "log::debug!(",
+    "log::info!(",
     "log::warn!(",
     "log::error!(",
     "#[error(",
     "reason =",
     "debug_struct(",
     "write!(f,",
+    "const METHOD: &str =",
 ];
 
 /// A string and what stands before it in its statement.

@@ -12,8 +12,8 @@ const LAYER_STEPS = 4;
 // within a surface that is opaque after a voxel, and more within what is not.
 const SOFT = 0.5;
 
-// Steps count from where a layer shows more than this share of the ray: 4 of 255, too little to be shaded by itself.
-const FAINT = 0.015625;
+// Steps count from where a layer shows more than this share of the ray: 16 of 255, too little to be shaded by itself.
+const FAINT = 0.0625;
 
 // Optical depth of a step that shows nothing: a thousandth of what 8 bits can.
 const EMPTY = 4e-6;

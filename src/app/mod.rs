@@ -33,7 +33,7 @@ use std::time::Duration;
 use eframe::egui;
 
 use self::common::give_up::GiveUp;
-use self::common::{light_keys, shortcuts};
+use self::common::{light_keys, reveal, shortcuts};
 use self::shell::file_tasks::FileTasks;
 use self::shell::status_file;
 use self::windows::files;
@@ -225,10 +225,12 @@ impl App {
 
     /// Whether the full-quality picture of the current settings is on screen and nothing is being opened, read or corrected.
     fn is_complete(&self) -> bool {
-        self.loader.progress().is_none()
-            && self.file_tasks.path().is_none()
-            && !self.is_correcting()
-            && self.viewport.is_idle(&self.compare.looks(&self.settings))
+        self.has_its_volume() && self.viewport.is_idle(&self.compare.looks(&self.settings))
+    }
+
+    /// Whether nothing is being opened, read or corrected.
+    fn has_its_volume(&self) -> bool {
+        self.loader.progress().is_none() && self.file_tasks.path().is_none() && !self.is_correcting()
     }
 
     /// Where the picture is, in points, and its size in physical pixels.

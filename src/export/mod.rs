@@ -19,7 +19,7 @@ pub use files::{
     Destination, check_ending, check_writable, hold_lock, is_ours, keep_backup, make_folder, put_aside,
     remove, remove_abandoned, remove_unfinished, rename, write_atomically,
 };
-pub use marks::{Layer, SIDES, ScaleBar, Sheet, marks, marks_of_size, scale_bar, sides};
+pub use marks::{Layer, SIDES, ScaleBar, Sheet, marks, marks_of_size, scale_bar, sides, sides_along};
 pub use picture_file::{
     PictureFormat, check_picture, may_carry_record, picture_size, read_picture, read_record, write_picture,
 };

@@ -23,7 +23,8 @@ fn the_transfer_function_is_edited_in_its_plot() {
 
     // A click on the empty plot adds a point, Delete removes it.
     let plot = harness.get_by_label("Transfer function plot").rect();
-    let empty = plot.left_top() + vec2(30.0, 30.0);
+    // Between the ends of the curve, above it.
+    let empty = plot.center_top() + vec2(10.0, 12.0);
     drag(&mut harness, empty, Vec2::ZERO);
     harness.run_steps(2);
     assert_eq!(harness.state().settings().transfer.points.len(), before.points.len() + 1);
@@ -223,7 +224,8 @@ fn a_curve_is_drawn_by_hand() {
     harness.step();
     harness.key_press(egui::Key::Escape);
     harness.run_steps(2);
-    let empty = plot.left_top() + vec2(30.0, 30.0);
+    // Between the ends of the curve, above it.
+    let empty = plot.center_top() + vec2(10.0, 12.0);
     drag(&mut harness, empty, Vec2::ZERO);
     harness.run_steps(2);
     assert_eq!(

@@ -286,7 +286,6 @@ fn escape_closes_windows_one_by_one() {
     harness.run_steps(4);
     let is_open = |harness: &Harness<'_, App>, title: &str| harness.query_by_label(title).is_some();
     assert!(is_open(&harness, "Slices") && is_open(&harness, "Export picture or turntable"));
-    press(&mut harness, egui::Key::Escape);
     press(&mut harness, egui::Key::D);
     assert!(is_open(&harness, "Slices"), "letters are no commands where a name is typed");
     press(&mut harness, egui::Key::Escape);

@@ -17,6 +17,8 @@ const WIDTH: f32 = 470.0;
 const NARROWEST: f32 = 240.0;
 /// What the dock leaves of the picture.
 const PICTURE: f32 = 240.0;
+/// What the narrowest dock leaves of it at least: where it would leave less, tools float over the picture.
+const LEAST_PICTURE: f32 = 160.0;
 /// Points of a docked tool's header.
 const HEADER: f32 = 26.0;
 /// Points of the title bar of a window, from its right border, where the toolkit has its own button.
@@ -35,6 +37,8 @@ struct Dock {
     is_hidden: bool,
     /// The window is too narrow for tools beside the picture: they float over it.
     is_too_narrow: bool,
+    /// Points of width that the dock may have.
+    room: f32,
 }
 
 fn change<R>(ctx: &egui::Context, change: impl FnOnce(&mut Dock) -> R) -> R {
@@ -53,19 +57,20 @@ pub(in crate::app) fn set_docked(ctx: &egui::Context, titles: &BTreeSet<String>)
 
 /// Keeps room beside the picture, if a docked tool is open.
 pub(in crate::app) fn reserve(ui: &mut Ui) {
-    let is_too_narrow = ui.available_width() < NARROWEST + PICTURE;
+    let room = ui.available_width() - PICTURE;
+    let is_too_narrow = ui.available_width() < NARROWEST + LEAST_PICTURE;
     let is_needed = change(ui.ctx(), |dock| {
         dock.before = std::mem::take(&mut dock.now);
         if is_too_narrow {
             dock.before.clear();
         }
-        (dock.area, dock.is_hidden, dock.is_too_narrow) = (None, false, is_too_narrow);
+        (dock.area, dock.is_hidden, dock.is_too_narrow, dock.room) = (None, false, is_too_narrow, room);
         !dock.before.is_empty()
     });
     if !is_needed {
         return;
     }
-    let most = (ui.available_width() - PICTURE).max(NARROWEST);
+    let most = room.max(NARROWEST);
     let panel = Panel::left("dock").resizable(true).default_size(WIDTH.min(most));
     let panel = panel.size_range(NARROWEST..=most).frame(theme::panel(ui));
     let area = panel.show(ui, |ui| ui.allocate_rect(ui.available_rect_before_wrap(), Sense::hover()).rect);
@@ -106,20 +111,34 @@ impl Tool {
         if !*open {
             return;
         }
-        if change(ctx, |dock| dock.docked.contains(self.title) && !dock.is_too_narrow) {
+        if self.is_docked(ctx, is_dialog) {
             self.show_docked(ctx, open, is_dialog, add);
         } else {
-            self.show_floating(ctx, open, add);
+            self.show_floating(ctx, open, self.has_room(ctx, is_dialog), add);
         }
     }
 
-    fn show_floating(self, ctx: &egui::Context, open: &mut bool, add: impl FnOnce(&mut Ui)) {
+    /// Whether a tool that asks something floats over the picture, be it for want of room.
+    pub(in crate::app) fn is_floating_dialog(&self, ctx: &egui::Context) -> bool {
+        !self.is_docked(ctx, true)
+    }
+
+    fn is_docked(&self, ctx: &egui::Context, is_dialog: bool) -> bool {
+        self.has_room(ctx, is_dialog) && change(ctx, |dock| dock.docked.contains(self.title))
+    }
+
+    /// Whether it can be docked. Rows of a dialog are not cut: its buttons would be out of sight.
+    fn has_room(&self, ctx: &egui::Context, is_dialog: bool) -> bool {
+        change(ctx, |dock| !dock.is_too_narrow && (!is_dialog || dock.room >= self.default_width))
+    }
+
+    fn show_floating(self, ctx: &egui::Context, open: &mut bool, can_dock: bool, add: impl FnOnce(&mut Ui)) {
         let window = egui::Window::new(self.title).open(open).collapsible(false).resizable(true);
         let window = window.constrain_to(frame::room(ctx)).default_pos(self.default_pos);
         let shown = window.default_width(self.default_width).show(ctx, add);
         let Some(shown) = shown else { return };
         *open &= !frame::is_left(ctx, Some(&shown.response));
-        if change(ctx, |dock| dock.is_too_narrow) {
+        if !can_dock {
             return;
         }
         // Beside the button that closes it.

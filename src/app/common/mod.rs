@@ -1,7 +1,6 @@
 //! What all parts of the window share: commands and their keys, colours and sizes, keys for lights, facts of the open volume, long names.
 
 pub(super) mod aspect;
-pub(super) mod command_names;
 pub(super) mod commands;
 pub(super) mod dock;
 pub(super) mod elide;

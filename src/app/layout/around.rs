@@ -53,7 +53,8 @@ impl App {
             exporting: self.export.progress_unseen(),
         };
         let went = self.history.went(&self.settings);
-        status::show(ui, facts, busy, went, &mut self.messages, commands);
+        let status = status::Status { facts, busy, making: self.making(), went };
+        status::show(ui, status, &mut self.messages, commands);
         if let Some(volume) = &self.volume {
             // A table has a height of its own.
             let (name, height) = if volume.is_shown_by_label(&self.settings) {
@@ -107,7 +108,6 @@ impl App {
             (self.is_correcting(), text::status::CORRECTING),
             (self.is_making_look(), text::status::MAKING_LOOK),
             (self.light_search.is_some(), text::status::PLACING_LIGHTS),
-            (self.surroundings.is_some(), text::status::READING_SURROUNDINGS),
             (self.balance.is_some(), text::status::BALANCING),
         ]
         .into_iter()

@@ -60,11 +60,6 @@ impl Panels<'_> {
             None => per_mm(LengthUnit::showing(1.0, true), 1.0),
         }
     }
-
-    /// Whether a table of labels says what is seen.
-    fn is_by_label(&self) -> bool {
-        self.volume.is_some_and(|volume| volume.is_shown_by_label(self.settings))
-    }
 }
 
 /// Shows all sections, in the order in which people work. Whatever they hold, the panel is as wide as it was made.

@@ -5,7 +5,7 @@ use eframe::egui::{self, Button, ThemePreference};
 use crate::app::common::aspect::Alternatives;
 use crate::app::common::commands::Command;
 use crate::app::common::elide::{elide_middle, text_width};
-use crate::app::common::theme;
+use crate::app::common::{frame, theme};
 use crate::app::memory::{EarlierRun, RecentFile, RecentPictures};
 use crate::app::text;
 use crate::app::windows::recovery;

@@ -175,7 +175,7 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
         }
         // The first hints of all lie there.
         if overlay.on && !hints.on {
-            ct_looks.show(ui, canvas.rect, volume, commands);
+            ct_looks.show(ui, canvas.rect, settings, volume, commands);
         }
     }
     if let Some(dataset) = viewport.dataset().filter(|_| probe.on && is_one_view) {
@@ -255,7 +255,8 @@ impl App {
         let shown = egui::CentralPanel::no_frame().show(ui, |ui| show(ui, inputs));
         let (canvas, result) = shown.inner;
         self.canvas = Some(canvas);
-        self.messages.notice(ui.ctx(), canvas.rect);
+        // At the top of all the room, away from a question that is asked beside a smaller picture.
+        self.messages.notice(ui.ctx(), shown.response.rect);
         self.messages.list(ui.ctx());
         if let Err(err) = result {
             self.rendering_failed(&err, ui.ctx());

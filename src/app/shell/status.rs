@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use eframe::egui::{self, ProgressBar, RichText};
+use eframe::egui::{self, ProgressBar, RichText, TextStyle};
 
 use super::messages::Messages;
 use crate::app::common::commands::Command;
@@ -17,8 +17,14 @@ use crate::data::plain;
 /// Characters of a path in the bar: more than the widest screen shows.
 const LONGEST_PATH: usize = 500;
 
+/// Points of the last step back or forward: a name of a light may be long.
+const LONGEST_STEP: f32 = 260.0;
+
+/// Points for the buttons at the right of the bar.
+const BUTTONS: f32 = 200.0;
+
 /// Work that can be cancelled in the bar.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Busy<'a> {
     /// The volume that is being opened.
     pub opening: Option<LoadProgress<'a>>,
@@ -28,34 +34,38 @@ pub(crate) struct Busy<'a> {
     pub exporting: Option<Unseen>,
 }
 
-/// Shows the bar. `went`: the last step back or forward.
+/// What the status bar shows.
+#[derive(Clone, Copy)]
+pub(crate) struct Status<'a> {
+    /// What is known of the renderer's work.
+    pub facts: &'a Facts,
+    /// Work that can be cancelled.
+    pub busy: Busy<'a>,
+    /// What else is being made, and is waited for.
+    pub making: Option<&'static str>,
+    /// The last step back or forward.
+    pub went: Option<&'a str>,
+}
+
+/// Shows the bar.
 pub(crate) fn show(
     ui: &mut egui::Ui,
-    facts: &Facts,
-    Busy { opening, reading, exporting }: Busy<'_>,
-    went: Option<&str>,
+    status: Status<'_>,
     messages: &mut Messages,
     commands: &mut Vec<Command>,
 ) {
-    let Status { facts, opening, exporting, making, went } = status;
+    let Status { facts, busy: Busy { opening, reading, exporting }, making, went } = status;
     egui::Panel::bottom("status").resizable(false).frame(theme::panel(ui)).show(ui, |ui| {
         ui.horizontal(|ui| {
-            if let Some(LoadProgress { source, reading: _, phase, fraction, bytes }) = opening {
-                match fraction {
-                    Some(share) => ui.add(ProgressBar::new(share).desired_width(120.0).desired_height(8.0)),
-                    // A bar that stays empty looks stuck.
-                    None => ui.spinner(),
-                };
-                ui.label(text::status::opening(
-                    phase,
-                    bytes,
-                    &plain(&source.to_string_lossy(), LONGEST_PATH),
-                ));
-                cancel(ui, commands);
+            if let Some(opening) = opening {
+                progress_of_opening(ui, &opening, commands);
             } else if let Some(path) = reading {
                 ui.spinner();
                 let path = plain(&path.to_string_lossy(), LONGEST_PATH);
-                ui.label(text::status::opening(text::opening::READING, None, &path));
+                let words = text::status::opening(text::opening::READING, None, &path);
+                let room = ui.available_width() - BUTTONS;
+                let response = ui.label(elide_middle(ui, &words, &TextStyle::Body, room));
+                response.on_hover_text(words);
                 cancel(ui, commands);
             } else {
                 doing(ui, facts.doing, making);
@@ -84,6 +94,21 @@ pub(crate) fn show(
             });
         });
     });
+}
+
+/// How far a volume is that is being opened.
+fn progress_of_opening(ui: &mut egui::Ui, opening: &LoadProgress<'_>, commands: &mut Vec<Command>) {
+    let &LoadProgress { source, reading: _, phase, fraction, bytes } = opening;
+    match fraction {
+        Some(share) => ui.add(ProgressBar::new(share).desired_width(120.0).desired_height(8.0)),
+        // A bar that stays empty looks stuck.
+        None => ui.spinner(),
+    };
+    let words = text::status::opening(phase, bytes, &plain(&source.to_string_lossy(), LONGEST_PATH));
+    let room = ui.available_width() - BUTTONS;
+    let response = ui.label(elide_middle(ui, &words, &TextStyle::Body, room));
+    response.on_hover_text(words);
+    cancel(ui, commands);
 }
 
 /// The button that ends reading and opening.

@@ -20,8 +20,7 @@ pub enum AppError {
 /// machine that has built the program: `winit EventLoopError: os error at FILE:LINE: REASON`.
 fn cause(error: &eframe::Error) -> String {
     let text = error.to_string();
-    let Some((_, place)) = text.split_once("os error at ") else { return text };
-    let reason = place.split_once(".rs:").and_then(|(_, rest)| {
+    let reason = text.split_once(".rs:").and_then(|(_, rest)| {
         let (line, reason) = rest.split_once(": ")?;
         line.bytes().all(|byte| byte.is_ascii_digit()).then(|| reason.trim_end_matches('.').to_owned())
     });

@@ -7,39 +7,11 @@ use super::zoom::ShownValues;
 use crate::app::common::commands::Command;
 use crate::app::common::volume_facts::{VolumeFacts, decimals};
 use crate::app::common::{frame, reveal, theme};
-use crate::data::{DataKind, ValueRange};
-use crate::model::{COLOR_MAPS, ColorMap, ControlPoint, Easing, Mixing, PRESETS, TransferFunction};
+use crate::data::ValueRange;
+use crate::model::{COLOR_MAPS, ColorMap, ControlPoint, Easing, Mixing, TransferFunction};
 
 /// Size of the strip that shows a colour map.
 const STRIP: egui::Vec2 = vec2(96.0, 14.0);
-
-/// Presets, by domain; dim where they are for another kind of data.
-pub(super) fn presets(ui: &mut Ui, kind: &DataKind, commands: &mut Vec<Command>) {
-    frame::scrolling_menu(ui, text::transfer::PRESETS, |ui| {
-        let all = ui.button(&*Command::TryPresets.label()).on_hover_text(text::transfer::TRY_PRESETS_TIP);
-        if all.clicked() {
-            commands.push(Command::TryPresets);
-        }
-        ui.separator();
-        let mut domain = "";
-        // The one of the benchmarks is for the command line.
-        for preset in PRESETS.into_iter().filter(|preset| preset.domain() != "bench") {
-            if preset.domain() != domain {
-                domain = preset.domain();
-                ui.weak(preset.domain_titles()[1]);
-            }
-            let (title, about) = (preset.title(), preset.about());
-            let (title, about) = if preset.suits(kind) {
-                (RichText::new(title), about)
-            } else {
-                (RichText::new(title).weak(), format!("{about}. {}", text::transfer::FOR_CT))
-            };
-            if ui.button(title).on_hover_text(about).clicked() {
-                commands.push(Command::UsePreset(preset));
-            }
-        }
-    });
-}
 
 /// Colour maps, with their colours.
 pub(super) fn colors(ui: &mut Ui, function: &mut TransferFunction, commands: &mut Vec<Command>) {

@@ -6,6 +6,7 @@ mod text;
 pub(crate) mod xml;
 
 pub(crate) use natural_order::natural;
+pub(crate) use small_file::read_bounded;
 pub use small_file::read_small;
 pub use text::{fingerprint, one_line, plain, single_line, without_controls};
 pub use xml::XmlError;

@@ -109,6 +109,14 @@ fn load_watched(path: &Path, options: &LoadOptions, control: &LoadControl) -> Re
     let mut input = Input::open(attempt)?;
     let witness = Witness::of(attempt, &input)?;
     let start = Start::of(&mut input).map_err(|error| attempt.io(error))?;
+    // Voxels that somebody describes may begin like that by chance.
+    if start.is_packed_twice() && options.raw.dims.is_none() {
+        return Err(attempt.bad_input(
+            "format",
+            "it is compressed twice: what is in the gzip file is a gzip file again",
+            "unpack it once, with gunzip for example, and open what comes out",
+        ));
+    }
     let reader = match recognize(path, &start, &mut input, options) {
         FileFormat::Reader(reader) => reader,
         FileFormat::Unsupported(format) => return Err(format.refusal(attempt)),

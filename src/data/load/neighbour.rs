@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::LoadControl;
 use super::formats::{dicom, reader_of};
 use super::reading::input::Input;
 use super::reading::reader::Start;

@@ -15,7 +15,7 @@ const LAYER_STEPS: u32 = 4;
 const SOFT: f64 = 0.5;
 
 /// Share of a ray above which the steps of a layer count.
-const FAINT: f64 = 1.0 / 64.0;
+const FAINT: f64 = 1.0 / 16.0;
 
 /// Optical depth of a step that shows nothing.
 const EMPTY: f64 = 4e-6;
@@ -114,7 +114,7 @@ impl Reference<'_> {
         let mut layer = Layer::NOTHING;
         // From the middle of a slab to that of the next.
         for k in -1..=count {
-            let halves = self.halves(stack, integrated, [i, j, k as f64]);
+            let halves = Self::halves(stack, integrated, [i, j, k as f64]);
             for (number, half) in halves.into_iter().enumerate() {
                 let seen = left * -(-half.depth).exp_m1();
                 layer.add(seen, k as f64 + 0.5 * number as f64, half);
@@ -132,7 +132,7 @@ impl Reference<'_> {
     }
 
     /// The halves of a step from the middle of slab `k` to that of the next.
-    fn halves(&self, stack: &Stack<'_>, integrated: &Integrated, [i, j, k]: [f64; 3]) -> [Half; 2] {
+    fn halves(stack: &Stack<'_>, integrated: &Integrated, [i, j, k]: [f64; 3]) -> [Half; 2] {
         let ends = [[i, j, k], [i, j, k + 1.0]];
         let length = stack.length_between(ends);
         let [a, b] = ends.map(|end| stack.density_around(end));

@@ -1,6 +1,6 @@
 //! The export window: beside the picture, which is what would be exported, marks included.
 
-use eframe::egui::{Key, Modifiers, Vec2};
+use eframe::egui::{Key, Modifiers, Role, Vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 use crate::harness::{bare_window, click, picture, wait_until, wait_until_idle, window};
@@ -26,7 +26,7 @@ fn the_picture_is_what_would_be_exported_with_its_marks() {
     let shape = |rect: eframe::egui::Rect| rect.width() / rect.height();
     assert!((shape(beside) / shape(usual) - 1.0).abs() < 0.02, "{beside} of {usual}");
 
-    click(&mut harness, "Window");
+    harness.get_by_role_and_label(Role::Button, "Window").click();
     harness.run_steps(4);
     let (plain, _) = picture(&mut harness);
     click(&mut harness, "Scale bar");

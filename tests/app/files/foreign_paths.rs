@@ -37,6 +37,8 @@ fn voxels(path: &Path) {
 
 fn drop_on(harness: &mut Harness<'_, App>, path: &Path) {
     harness.input_mut().dropped_files.push(Arc::new(Dropped(path.to_owned())));
+    harness.run_steps(2);
+    wait_until(harness, "never read", |app| app.file_being_read().is_none());
     harness.run_steps(4);
 }
 

@@ -3,6 +3,7 @@
 mod choosing;
 mod corrections;
 mod export;
+mod export_marks;
 mod foreign_files;
 mod foreign_paths;
 mod opening;

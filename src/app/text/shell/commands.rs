@@ -31,10 +31,7 @@ pub(crate) const SHOW_PALETTE: &str = "Find a command…";
 pub(crate) const RESET_VIEW: &str = "Reset view";
 pub(crate) const FRAME_ALL: &str = "Frame all";
 pub(crate) const TURN_OBJECT: &str = "Tilt by 90°";
-pub(crate) const TURN_OBJECT_WORDS: &str =
-    "stand up lay down flip tip over upside down turn object orientation";
 pub(crate) const TURN_ROUND: &str = "Rotate by 90°";
-pub(crate) const TURN_ROUND_WORDS: &str = "turn round quarter around spin object orientation";
 pub(crate) const TOGGLE_PROJECTION: &str = "Perspective or orthographic";
 pub(crate) const TOGGLE_FULL_SCREEN: &str = "Full screen";
 pub(crate) const TOGGLE_SIDE: &str = "Side panel";
@@ -48,7 +45,6 @@ pub(crate) const PICTURE_ONLY: &str = "Picture only";
 pub(crate) const LARGER: &str = "Larger interface";
 pub(crate) const SMALLER: &str = "Smaller interface";
 pub(crate) const USUAL_SIZE: &str = "Default interface size";
-pub(crate) const SCALE_WORDS: &str = "zoom text font size dpi scale reset";
 pub(crate) const TOGGLE_HANDLES: &str = "Handles";
 pub(crate) const TOGGLE_OVERLAY: &str = "Overlays";
 pub(crate) const TOGGLE_PROBE: &str = "Why is this dark? (probe)";
@@ -65,14 +61,6 @@ pub(crate) const ADD_LIGHT: &str = "Add light";
 pub(crate) const USE_LIGHTS: &str = "Use lights";
 pub(crate) const USE_LOOK: &str = "Use look";
 pub(crate) const TRY_LOOKS: &str = "Try looks…";
-/// What else commands are found by.
-pub(crate) const GO_ON_WORDS: &str = "go on where you left off continue resume restore";
-pub(crate) const SAVE_WORDS: &str = "save settings";
-pub(crate) const EXPORT_WORDS: &str = "screenshot save picture image figure render turntable video movie";
-pub(crate) const TRANSFER_WORDS: &str = "load colormap colour map lut tf";
-pub(crate) const SOLO_WORDS: &str = "only the selected light alone others off";
-pub(crate) const MUTE_WORDS: &str = "switch off on disable enable";
-pub(crate) const COMPARE_WORDS: &str = "before after split side by side difference";
 
 /// Where something is set.
 pub(crate) fn reveal(section: &str, row: Option<&str>) -> String {

@@ -42,7 +42,6 @@ pub(crate) fn refining(share: f32, stage: Stage) -> String {
 pub(crate) const CORRECTING: &str = "Correcting volume";
 pub(crate) const MAKING_LOOK: &str = "Preparing look";
 pub(crate) const PLACING_LIGHTS: &str = "Placing lights";
-pub(crate) const READING_SURROUNDINGS: &str = "Reading surroundings";
 pub(crate) const BALANCING: &str = "Balancing lights";
 
 /// Over the last step back or forward.

@@ -20,14 +20,15 @@ const fn noted(words: &'static str, note: &'static str) -> Sought {
     Sought { words, note }
 }
 
-pub(crate) const TURN_OBJECT: Sought = words("flip tip over upside down rotate 90° turn object orientation");
-pub(crate) const TURN_ROUND: Sought = words("rotate 90° around spin object orientation");
+pub(crate) const TURN_OBJECT: Sought =
+    words("stand up lay down flip tip over upside down rotate turn object orientation");
+pub(crate) const TURN_ROUND: Sought = words("turn round quarter around spin object orientation");
 pub(crate) const SCALE: Sought = words("zoom text font size dpi scale reset");
 pub(crate) const GO_ON: Sought = words("go on where you left off continue resume restore");
 pub(crate) const SAVE: Sought = words("save settings");
 pub(crate) const TRANSFER: Sought = words("load colormap colour map lut tf");
-pub(crate) const SOLO: Sought = words("solo alone others off");
-pub(crate) const MUTE: Sought = words("mute switch disable enable");
+pub(crate) const SOLO: Sought = words("only the selected light alone others off");
+pub(crate) const MUTE: Sought = words("switch off on disable enable");
 pub(crate) const COMPARE: Sought = words("before after split side by side difference");
 pub(crate) const PICTURE_ONLY: Sought = words("hide panels distraction free presentation zen maximise");
 

@@ -3,7 +3,8 @@
 
 pub(in crate::app) mod ct_looks;
 pub(in crate::app) mod export_marks;
-mod sides;
+mod outlined;
+pub(in crate::app) mod side_letters;
 
 use eframe::egui::{
     Align2, Color32, FontId, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2,

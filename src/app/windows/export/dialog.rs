@@ -6,7 +6,7 @@ use std::sync::atomic::Ordering;
 use eframe::egui::{self, Ui};
 
 use super::{Export, Kind, Request, destination};
-use crate::app::common::dock::{self, Tool};
+use crate::app::common::dock::Tool;
 use crate::app::common::shortcuts;
 use crate::app::text::{self, Named};
 use crate::export::{AnimationFormat, PictureFormat, frame_names};
@@ -49,6 +49,9 @@ impl Export {
         let mut request = None;
         let mut open = self.open;
         let tool = Tool { title: text::export::TITLE, default_pos: [160.0, 90.0], default_width: 440.0 };
+        if open && tool.is_floating_dialog(ctx) {
+            shortcuts::reserve_letters(ctx);
+        }
         tool.show_dialog(ctx, &mut open, |ui| {
             ui.horizontal(|ui| {
                 for (kind, Named { name, tip }) in KINDS {

@@ -2,6 +2,8 @@
 
 mod desktop;
 mod dialog;
+#[cfg(all(unix, not(target_os = "macos")))]
+mod portal;
 
 use std::path::{Path, PathBuf};
 

@@ -204,7 +204,7 @@ mod tests {
             assert_eq!(findings.missing.is_some(), is_missing, "{words}: {:?}", findings.missing);
         }
         for (words, section, row, is_missing) in [
-            ("resample", "Data", Some("Fewer voxels"), false),
+            ("resample", "Data", Some("Subsample"), false),
             ("denoise", "Camera", Some("Kernel"), true),
             ("depth of field", "Camera", Some("Field of view"), true),
             ("ambient occlusion", "Sky and scattering", Some("Soft light"), false),

@@ -7,6 +7,7 @@ use eframe::egui::{self, Align2, Key, Modifiers, RichText, TextEdit};
 
 use self::matching::{Finding, Findings, Subject, matching};
 use crate::app::common::commands::Command;
+use crate::app::common::shortcuts;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text;
 use crate::model::SceneAxis;
@@ -40,6 +41,7 @@ impl Palette {
         if !self.open {
             return;
         }
+        shortcuts::reserve_letters(ctx);
         let down = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::ArrowDown));
         let up = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::ArrowUp));
         let enter = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Enter));

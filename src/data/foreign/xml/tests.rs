@@ -4,13 +4,13 @@ use super::*;
 
 /// A root with so many namespaces, and as many children of which each declares one more: cubic in the parser.
 pub(crate) fn nested_namespaces(name: &str, count: usize) -> String {
-    let declared: String = (0..count).map(|at| format!(" xmlns:a{at}=\"u{at}\"")).collect();
+    let declared = (0..count).map(|at| format!(" xmlns:a{at}=\"u{at}\"")).collect::<Vec<String>>().concat();
     format!("<{name}{declared}>{}</{name}>", "<x xmlns:q=\"z\"/>".repeat(count))
 }
 
 /// One element with so many attributes: quadratic in the parser.
 pub(crate) fn many_attributes(name: &str, count: usize) -> String {
-    let attributes: String = (0..count).map(|at| format!(" a{at}=\"\"")).collect();
+    let attributes = (0..count).map(|at| format!(" a{at}=\"\"")).collect::<Vec<String>>().concat();
     format!("<{name}{attributes}/>")
 }
 
@@ -20,15 +20,16 @@ pub(crate) fn slow_texts(root: &str) -> Vec<(&'static str, String)> {
     let namespaces = nested_namespaces(root, 8000);
     let attributes = many_attributes(root, 60_000);
     // The same attributes with a prefix, whose namespace has a long name.
-    let prefixed: String = (0..4000).map(|at| format!(" p:a{at}=\"\"")).collect();
+    let prefixed = (0..4000).map(|at| format!(" p:a{at}=\"\"")).collect::<Vec<String>>().concat();
     let prefixed = format!("<{root} xmlns:p=\"{}\"{prefixed}/>", "u".repeat(600_000));
     // Long names that differ in their last character.
-    let long: String = (0..4000)
+    let long = (0..4000)
         .map(|at| format!(" {}{}=\"\"", "n".repeat(200), char::from_u32(0x4e00 + at).unwrap()))
-        .collect();
+        .collect::<Vec<String>>()
+        .concat();
     let deep = format!("<{root}>{}{}</{root}>", "<a>".repeat(100_000), "</a>".repeat(100_000));
     // Each level takes over those of the levels outside.
-    let stair: String = (0..250).map(|at| format!("<a xmlns:b{at}=\"u\">")).collect();
+    let stair = (0..250).map(|at| format!("<a xmlns:b{at}=\"u\">")).collect::<Vec<String>>().concat();
     let stairs = format!("<{root}>{}{}</{root}>", stair, "<x xmlns:q=\"z\"/>".repeat(10_000));
     vec![
         ("8000 namespaces", namespaces),
@@ -63,8 +64,10 @@ fn what_takes_a_parser_long_is_refused_unparsed() {
 #[test]
 fn what_others_write_is_parsed() {
     // As many planes as a long recording has, below the namespaces that the schema's own files declare.
-    let declared: String =
-        (0..12).map(|at| format!(" xmlns:N{at}=\"http://www.example.org/Schemas/{at}\"")).collect();
+    let declared = (0..12)
+        .map(|at| format!(" xmlns:N{at}=\"http://www.example.org/Schemas/{at}\""))
+        .collect::<Vec<String>>()
+        .concat();
     let planes = 40_000;
     let plane = "<TiffData FirstC=\"0\" FirstT=\"3\" FirstZ=\"12\" IFD=\"7\" PlaneCount=\"1\"><UUID FileName=\"a.ome.tif\">urn:uuid:1\
                  </UUID></TiffData><Plane DeltaT=\"1.5\" ExposureTime=\"0.1\" PositionX=\"1\" PositionY=\"2\" PositionZ=\"3\" \

@@ -75,6 +75,10 @@ pub(super) fn recognize(path: &Path, start: &Start, input: &mut Input, options: 
     if is_described() {
         return FileFormat::Reader(&raw::READER);
     }
+    // An archive of arrays is a ZIP archive, also where it has none.
+    if has_ending(path, ".npz") && start.has(b"PK", 0) {
+        return FileFormat::Reader(&numpy::NPZ);
+    }
     if let Some(format) = unsupported::by_content(path, start, input) {
         return FileFormat::Unsupported(format);
     }

@@ -91,7 +91,7 @@ fn files() -> Vec<Example> {
         example("Scanco", file(b"CTDATA-HEADER_V1"), &["Scanco", "itk"]),
         example("STL", file(b"solid part\n facet normal 0 0 1"), &["surface (STL)", "trimesh"]),
         example("PLY", file(b"ply\nformat ascii 1.0"), &["surface (PLY)", "trimesh"]),
-        (
+        example(
             "OBJ",
             file(b"# of a program\nmtllib a.mtl\nv 1.0 2.0 -3\nv 1 1 1\n"),
             &["surface (OBJ)", "trimesh"],

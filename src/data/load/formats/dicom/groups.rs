@@ -84,7 +84,7 @@ pub(super) fn groups(headers: &[Header]) -> Grouping {
             };
             match groups.iter_mut().rev().take(MOST_COMPARED).find(fits) {
                 Some(group) => group.slices.push(slice),
-                None => groups.push(Group::of_first(header, shape, slice)),
+                None => groups.push(Group::of_first(header, shape, &slice)),
             }
         }
     }
@@ -147,7 +147,7 @@ fn lie_in_parallel(one: &Plane, other: &Plane) -> bool {
 }
 
 impl Group {
-    fn of_first(header: &Header, shape: Shape, first: Slice) -> Self {
+    fn of_first(header: &Header, shape: Shape, first: &Slice) -> Self {
         let found = &header.found;
         let is_fraction = found.segmentation == Some(SegmentationType::Fractional);
         let has_frames_by_segment =
@@ -159,7 +159,7 @@ impl Group {
             (None, Colors::Palette) => Filling::Nearest,
             (None, _) => Filling::Means,
         };
-        Self { shape, slices: vec![first], filling, has_masks }
+        Self { shape, slices: vec![*first], filling, has_masks }
     }
 
     /// What users are told that it is.

@@ -104,12 +104,20 @@ fn width_is_usable(slice: &Slice) -> bool {
     slice.plane.window[1].is_some_and(|width| width >= 1.0)
 }
 
-/// What users should know of how values are shown.
+/// The part of its pictures that is shown of a volume.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ShownPart {
+    /// One component of colours, which was chosen.
+    pub(super) is_component: bool,
+    /// Slices by themselves that lie side by side in a picture.
+    pub(super) is_unpacked: bool,
+}
+
+/// Remarks on how values are shown.
 pub(super) fn remarks(
     header: &Header,
     shape: &Shape,
-    is_component_chosen: bool,
-    is_unpacked: bool,
+    ShownPart { is_component, is_unpacked }: ShownPart,
 ) -> Vec<String> {
     let found = &header.found;
     let mut remarks = Vec::new();
@@ -118,7 +126,7 @@ pub(super) fn remarks(
         Colors::Palette => {
             remarks.push("its values are numbers of colours in a table: they mean no brightness");
         }
-        Colors::Rgb | Colors::Ybr | Colors::YbrPairs if !is_component_chosen => {
+        Colors::Rgb | Colors::Ybr | Colors::YbrPairs if !is_component => {
             remarks.push("colours are shown as their luminance");
         }
         Colors::Grey | Colors::Rgb | Colors::Ybr | Colors::YbrPairs => {}

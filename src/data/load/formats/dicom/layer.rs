@@ -16,13 +16,6 @@ pub(crate) struct Slice {
     pub(crate) plane: Plane,
 }
 
-impl Slice {
-    /// Whether both are the same picture of the same file.
-    pub(crate) fn is_same(&self, other: &Self) -> bool {
-        (self.file, self.frame, self.tile) == (other.file, other.frame, other.tile)
-    }
-}
-
 /// A layer of a volume, made of pictures by their numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Layer {

@@ -51,7 +51,8 @@ impl OpenSeries<'_> {
             None => self.attempt.chosen(&self.options.choice, Dimension::Series, offers)?,
         };
         let series = series.swap_remove(chosen);
-        if self.main.is_some() {
+        // A single file may hold several slices of its own.
+        if self.main.is_some() && self.headers.len() > 1 {
             remarks.extend(of_main(series.pictures(), all));
         }
         let of_series = series.first_file().map(|file| self.headers[file].found.series.as_str());

@@ -81,17 +81,13 @@ pub(super) fn load(
         }
     };
     let meant = Meant { padding: hints.padding, values: &values };
-    let layers = Layers { source: &source, layers, shape: *shape };
+    let layers = Layers { source: &source, list: layers, shape: *shape };
     let voxels = layers.read(attempt, &extent.read, voxel_type, &meant);
     let voxels = voxels.map_err(|fault| layers.looked_into(&extent.read, fault))?;
     let mut placement = placement.clone();
     let is_unpacked = first.tile.is_some();
-    placement.remarks.extend(hints::remarks(
-        &headers[first.file],
-        shape,
-        options.choice.component.is_some(),
-        is_unpacked,
-    ));
+    let part = hints::ShownPart { is_component: options.choice.component.is_some(), is_unpacked };
+    placement.remarks.extend(hints::remarks(&headers[first.file], shape, part));
     let overlapping = source.overlapping.load(Ordering::Relaxed);
     if overlapping > 0 {
         placement.remarks.push(format!(
@@ -109,7 +105,7 @@ impl VolumeRequest<'_> {
         let StackedVolume { slices, layers, .. } = &self.volume;
         if self.has_masks {
             let highest = slices.iter().filter_map(|slice| slice.plane.segment).max().unwrap_or(1);
-            return if highest <= u16::from(u8::MAX) { VoxelType::U8 } else { VoxelType::U16 };
+            return if u8::try_from(highest).is_ok() { VoxelType::U8 } else { VoxelType::U16 };
         }
         // Only real numbers have one that is none.
         let has_nothing = self.filling == Filling::Means && layers.contains(&Layer::Empty);
@@ -143,7 +139,7 @@ fn stores<'a>(
 /// The layers of a volume, and what they are made of.
 struct Layers<'a> {
     source: &'a Source<'a>,
-    layers: &'a [Layer],
+    list: &'a [Layer],
     shape: Shape,
 }
 
@@ -195,7 +191,7 @@ impl Layers<'_> {
         let [width, height, _] = kept.dims();
         let mut voxels: Vec<T> = reserved(attempt, kept.count())?;
         voxels.resize(kept.count(), T::default());
-        let layers: Vec<&Layer> = kept.slices().map(|layer| &self.layers[layer]).collect();
+        let layers: Vec<&Layer> = kept.slices().map(|layer| &self.list[layer]).collect();
         let is_whole = [width, height] == [kept.grid[0], kept.grid[1]];
         let chunks = voxels.par_chunks_mut(width * height).zip(layers.par_iter());
         chunks.try_for_each_init(Scratch::default, |scratch: &mut Scratch<T>, (voxels, layer)| {
@@ -217,8 +213,7 @@ impl Layers<'_> {
     /// Where a picture could not be read: all that cannot be, so that the others can be shown without them.
     fn looked_into(&self, kept: &Kept, fault: Fault) -> Fault {
         let Fault::Unreadable { why, .. } = fault else { return fault };
-        let mut pictures: Vec<usize> =
-            kept.slices().flat_map(|layer| self.layers[layer].pictures()).collect();
+        let mut pictures: Vec<usize> = kept.slices().flat_map(|layer| self.list[layer].pictures()).collect();
         pictures.sort_unstable();
         pictures.dedup();
         let total = pictures.len();

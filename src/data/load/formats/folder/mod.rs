@@ -8,6 +8,7 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use super::pictures::slices;
+use super::unsupported::of_folder;
 use super::{LoadControl, LoadError, LoadOptions, dicom};
 use crate::data::Volume;
 use crate::data::attempt::Attempt;
@@ -23,6 +24,9 @@ pub(in crate::data::load) fn load(
     control: &LoadControl,
 ) -> Result<Volume, LoadError> {
     let attempt = Attempt { what: "open the folder", path };
+    if let Some(format) = of_folder(path) {
+        return Err(format.refusal(attempt));
+    }
     let mut files = files_in(attempt, control)?;
     let mut nested = Nested::default();
     if let Some(among) = &options.among {

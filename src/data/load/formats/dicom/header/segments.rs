@@ -33,7 +33,7 @@ impl SegmentationType {
 pub(crate) struct Segment {
     pub(crate) number: Option<u16>,
     pub(crate) label: String,
-    /// CIELab as the standard stores it: each part from 0 to 65535.
+    /// `CIELab` as the standard stores it: each part from 0 to 65535.
     pub(crate) color: Option<[u16; 3]>,
 }
 
@@ -48,7 +48,7 @@ pub(crate) fn labels(segments: &[Segment]) -> Labels {
     labels
 }
 
-/// sRGB, each part 0 … 1, of a colour in CIELab under D50 as PS3.3 section C.10.7.1.1 stores it; what no screen can
+/// sRGB, each part 0 … 1, of a colour in `CIELab` under D50 as PS3.3 section C.10.7.1.1 stores it; what no screen can
 /// show is the nearest in each part.
 fn srgb_from_cielab([lightness, a, b]: [u16; 3]) -> [f32; 3] {
     let share = |part: u16| f64::from(part) / f64::from(u16::MAX);

@@ -55,7 +55,8 @@ impl SliceGrid {
         }
         let apart = format!("its slices are {} to {} apart", length(shortest), length(longest));
         let intervals = (span / quarter).round().max(1.0);
-        if !(intervals < most as f64) {
+        let has_room = intervals < most as f64;
+        if !has_room {
             let layers = (0..places_mm.len()).map(Layer::Picture).collect();
             let remark = format!(
                 "{apart}, too unevenly to show each at its place: they are shown {} apart",
@@ -242,7 +243,7 @@ mod tests {
             panic!("{:?}", found.layers)
         };
         assert!((share - 0.2 / 1.4).abs() < 1e-12);
-        assert!(found.remark.unwrap().contains("1.0000 to 1.4000 mm apart"));
+        assert!(found.remark.unwrap().contains("1.0000 mm to 1.4000 mm apart"));
     }
 
     #[test]

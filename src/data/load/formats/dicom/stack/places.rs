@@ -28,7 +28,8 @@ impl Places {
         let mut last = f64::NEG_INFINITY;
         for &picture in pictures {
             let place = poses[picture].place_mm;
-            if !(place - last <= tolerance_mm) {
+            let is_near = place - last <= tolerance_mm;
+            if !is_near {
                 places.push(Vec::new());
             }
             last = place;

@@ -97,7 +97,7 @@ fn uneven_slices_are_interpolated_to_their_places() {
         // Up to what counts as even: a twentieth of a distance.
         assert!((found - right).abs() <= 0.051 * distance * 10.0, "{z}: {found}, {right} expected");
     }
-    assert_remark(&volume, "1.0000 to 1.6000 mm apart: they are interpolated to layers 1.0000 mm apart");
+    assert_remark(&volume, "1.0000 mm to 1.6000 mm apart: they are interpolated to layers 1.0000 mm apart");
 }
 
 #[test]

@@ -55,7 +55,8 @@ fn phases_that_were_taken_in_turns_are_one_volume() {
 
 #[test]
 fn every_attribute_that_varies_is_offered() {
-    let cases: [(fn(Set, f64) -> Set, &str); 8] = [
+    type Attribute = fn(Set, f64) -> Set;
+    let cases: [(Attribute, &str); 8] = [
         (|set, n| set.text(tags::TEMPORAL_POSITION, *b"IS", &n.to_string()), "temporal position 2"),
         (|set, n| set.text(tags::ECHO_NUMBER, *b"IS", &n.to_string()), "echo 2"),
         (|set, n| set.decimal(tags::TRIGGER_TIME, &(n * 40.0).to_string()), "trigger time 80 ms"),

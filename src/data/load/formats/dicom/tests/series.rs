@@ -44,7 +44,7 @@ fn what_is_odd_about_a_series_is_said() {
         (
             vec![slice("0", 100, "1"), slice("1", 200, "2"), slice("2.4", 340, "3")],
             vec![100, 220, 340],
-            "1.0000 to 1.4000 mm apart: they are interpolated to layers 1.2000 mm apart",
+            "1.0000 mm to 1.4000 mm apart: they are interpolated to layers 1.2000 mm apart",
         ),
         (vec![slice("0", 1, "1"), slice("1", 2, "2"), slice("1", 2, "2")], vec![1, 2], "copies of others"),
         (

@@ -75,6 +75,7 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
 }
 
 /// Loads the volume of a file of OME-XML that lies beside its TIFF files.
+#[expect(clippy::needless_pass_by_value, reason = "as all readers are called")]
 fn load_companion(source: Source<'_>) -> Result<Volume, LoadError> {
     let Source { path, options, control, .. } = source;
     let attempt = Attempt { what: "read the OME-XML of the volume", path };

@@ -182,7 +182,7 @@ fn xml_that_would_take_long_is_refused() {
     let folder = Folder::new("foot.raw");
     // As much as a description may have, with what makes it one for who looks at its beginning alone.
     let namespaces = nested_namespaces("InviwoVolume", 1500);
-    let attributes = many_attributes("InviwoVolume", 7000).replacen("<", "<?x <!-- <RawFile ?><", 1);
+    let attributes = many_attributes("InviwoVolume", 7000).replacen('<', "<?x <!-- <RawFile ?><", 1);
     folder.write("a.ivf", format!("<!-- <RawFile -->{namespaces}"));
     let error = folder.load("a.ivf", plain()).unwrap_err();
     assert_eq!(error.kind(), LoadErrorKind::BadInput);

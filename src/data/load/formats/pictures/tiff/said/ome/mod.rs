@@ -159,6 +159,10 @@ fn image_of<'a, 'i>(
 ) -> Result<[Node<'a, 'i>; 2], LoadError> {
     let mut images: Vec<[Node<'_, '_>; 2]> =
         children(root, "Image").filter_map(|image| Some([image, child(image, "Pixels")?])).collect();
+    if images.len() > MOST_IMAGES {
+        let why = format!("there are {} images, and {MOST_IMAGES} are read at most", images.len());
+        return Err(attempt.limit("Image", why, "split the file into several"));
+    }
     let offers: Vec<Offer> = images
         .iter()
         .enumerate()
@@ -197,25 +201,7 @@ fn of_root(
     let Some(first) = tiff.pages.first() else {
         return Err(attempt.bad_input("pages", "there is none", HELP));
     };
-    let images: Vec<(Node<'_, '_>, Node<'_, '_>)> =
-        children(root, "Image").filter_map(|image| Some((image, child(image, "Pixels")?))).collect();
-    if images.len() > MOST_IMAGES {
-        let why = format!("there are {} images, and {MOST_IMAGES} are read at most", images.len());
-        return Err(attempt.limit("Image", why, "split the file into several"));
-    }
-    let named = |image: Node<'_, '_>| image.attribute("Name").unwrap_or_default().to_owned();
-    let offers: Vec<Offer> = images
-        .iter()
-        .enumerate()
-        .map(|(at, &(image, pixels))| {
-            let size = |name| number(pixels, name).unwrap_or(0);
-            Offer::numbered(at, &named(image), [size("SizeX"), size("SizeY"), size("SizeZ")])
-        })
-        .collect();
-    if offers.is_empty() {
-        return Err(attempt.bad_input("description", "its OME-XML has no image", HELP));
-    }
-    let (image, pixels) = images[attempt.chosen(choice, Dimension::Series, offers)?];
+    let [image, pixels] = image_of(attempt, root, choice)?;
     let sizes = Sizes::of(attempt, pixels, first.samples)?;
     let inside = if first.meaning == Meaning::Channels { first.samples } else { 1 };
     let channels = sizes.channels.saturating_mul(inside);

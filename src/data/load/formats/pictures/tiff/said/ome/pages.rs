@@ -22,7 +22,7 @@ pub(super) struct Pages<'a> {
     /// What the file that is opened is called in the XML.
     own: Option<&'a str>,
     /// Pages of that file.
-    own_pages: usize,
+    own_count: usize,
 }
 
 /// Pages of some slices.
@@ -84,7 +84,7 @@ impl<'a> Pages<'a> {
             pages.extend((0..own_pages.min(all)).map(|page| (page, ("", page))));
         }
         let own = own_name(attempt, root, &elements);
-        Ok(Self { places: pages, strides, sizes: counts, own, own_pages })
+        Ok(Self { places: pages, strides, sizes: counts, own, own_count: own_pages })
     }
 
     /// The pages of some slices, channels and times.
@@ -102,7 +102,7 @@ impl<'a> Pages<'a> {
                 continue;
             };
             let file = match known.get(name) {
-                _ if name.is_empty() || Some(name) == self.own => (page < self.own_pages).then_some(0),
+                _ if name.is_empty() || Some(name) == self.own => (page < self.own_count).then_some(0),
                 Some(&file) => file,
                 None => {
                     let file = match beside_of(attempt, name) {
@@ -148,7 +148,7 @@ impl<'a> Pages<'a> {
     /// True where a page is there, as far as is known without opening another file.
     fn may_be_there(&self, &(name, page): &(&str, usize)) -> bool {
         let is_own = name.is_empty() || Some(name) == self.own;
-        !is_own || page < self.own_pages
+        !is_own || page < self.own_count
     }
 
     /// Error for a channel and a time that have no page at all.
@@ -165,7 +165,7 @@ impl<'a> Pages<'a> {
         there.dedup();
         let why = format!(
             "there is no page for channel {channel} at time {frame}; the file has {} pages",
-            self.own_pages
+            self.own_count
         );
         let words = there.iter().take(MOST_LISTED).map(|[channel, frame]| format!("{channel} at {frame}"));
         let words = words.collect::<Vec<_>>().join(", ");

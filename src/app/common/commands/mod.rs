@@ -1,5 +1,7 @@
 //! What menus, keys and buttons ask for. Collected during a frame, carried out at its end.
 
+mod names;
+
 use std::path::PathBuf;
 
 use super::places::PLACES;

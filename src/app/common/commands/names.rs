@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
-use super::commands::Command;
-use super::places::words;
+use super::Command;
+use crate::app::common::places::words;
 use crate::app::text;
 use crate::model::{COLOR_MAPS, ObjectTurn, SceneAxis};
 
