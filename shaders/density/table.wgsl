@@ -7,7 +7,7 @@ struct TransferTable {
     sides: array<f32, 1024>,
     // For each power of two up to the table's size, largest extinctions over so many entries from each on.
     peaks: array<f32, 11264>,
-    // Of extinction over densities from 0 to each entry's, with entries 1 apart.
+    // Integral of extinction over densities from 0 to each entry's, with entries 1 apart.
     integrals: array<f32, 1024>,
 }
 

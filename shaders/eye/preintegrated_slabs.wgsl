@@ -46,7 +46,7 @@ fn step_end(ray: Ray, k: i32) -> StepEnd {
 
 // Steps that are shaded at once.
 struct Layer {
-    // Of what is seen along the ray.
+    // Share of the ray's light that the layer gives: its opacity behind all layers before it.
     share: f32,
     // Sums of shares times places, in slabs of the frame, …
     places: f32,
@@ -58,8 +58,8 @@ struct Layer {
     last_depth: f32,
 }
 
-// How far behind the front of even material of an optical depth the mean place lies of what is seen of it, as a share of
-// its thickness: 1/τ − 1/(e^τ − 1), within 0.011.
+// Opacity-weighted mean depth in homogeneous material of optical depth τ, from its front, as a share of its thickness:
+// 1/τ − 1/(e^τ − 1), within 0.011.
 fn mean_place(tau: f32) -> f32 {
     return (6.0 + tau) / (12.0 + tau * (4.0 + tau));
 }
@@ -91,10 +91,10 @@ fn with_step(layer: Layer, a: StepEnd, b: StepEnd, k: i32, length: f32) -> Layer
     );
 }
 
-// What a ray shows between slabs of the frame, the first and the last inside.
+// Color and transmittance of a ray between two slabs of the frame, the first and the last inside.
 fn preintegrated_slabs(ray: Ray, span: vec2f, inside: vec2i) -> Seen {
     let walk = walk_along(eye.frame, ray);
-    // What is cut may end behind the middle of the last slab.
+    // A cut volume may end behind the middle of the last slab.
     let last = inside.y + select(0, 1, CUT);
     let step_length = eye.frame.slab * ray.obliquity;
     // Steps begin at the slab before one that may show something.
@@ -125,7 +125,7 @@ fn preintegrated_slabs(ray: Ray, span: vec2f, inside: vec2i) -> Seen {
             let seen = next_seen(walk, k + 1, last);
             has_leapt = is_empty && seen > k + 1;
             k = select(k, seen - 1, has_leapt);
-            // What lies behind a gap is shaded by itself.
+            // Material behind a gap is shaded by itself.
             let is_whole = steps >= select(LAYER_STEPS, LAYER_STEPS - 1, layer.last_depth < SOFT);
             if (is_whole || layer.left < eye.dark || k >= last || (is_empty && layer.share > 0.0)) {
                 break;

@@ -17,7 +17,7 @@ const WIDTH: f32 = 470.0;
 const NARROWEST: f32 = 240.0;
 /// What the dock leaves of the picture.
 const PICTURE: f32 = 240.0;
-/// What the narrowest dock leaves of it at least: where it would leave less, tools float over the picture.
+/// Least width of the picture beside the narrowest dock: where less is left, tools float over the picture.
 const LEAST_PICTURE: f32 = 160.0;
 /// Points of a docked tool's header.
 const HEADER: f32 = 26.0;

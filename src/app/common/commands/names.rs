@@ -20,7 +20,7 @@ impl Command {
     pub(crate) fn search_words(&self) -> &'static str {
         match self {
             Self::Reveal(place) => words(*place),
-            // Its domain, and what it is called on the command line.
+            // The domain, and the name on the command line.
             Self::UsePreset(preset) => preset.name,
             _ => "",
         }
