@@ -55,18 +55,23 @@ fn a_light_inside_the_volume() {
     check("light inside", DVec3::ONE, &settings);
 }
 
+/// Compares slabs of a kind as they are, where kernels are stretched, and cut by a plane.
+fn check_slabs(name: &str, mut settings: Settings) {
+    check(name, DVec3::ONE, &settings);
+    settings.sampling.slab = 1.6;
+    settings.camera.distance = 9.0;
+    check(&format!("{name}, stretched"), DVec3::new(1.0, 0.8, 1.6), &settings);
+    settings.camera = scenes::look().camera;
+    settings.cuts.plane =
+        ClipPlane { on: true, normal: [0.6, -1.0, 0.7], offset: 0.17, ..ClipPlane::default() };
+    check(&format!("{name}, cut"), DVec3::ONE, &settings);
+}
+
 #[test]
 fn slabs_by_need() {
     let mut settings = scenes::look();
     settings.sampling.slabs = Slabs::ByNeed;
-    check("slabs by need", DVec3::ONE, &settings);
-    settings.sampling.slab = 1.6;
-    settings.camera.distance = 9.0;
-    check("slabs by need, stretched", DVec3::new(1.0, 0.8, 1.6), &settings);
-    settings = Settings { camera: scenes::look().camera, ..settings };
-    settings.cuts.plane =
-        ClipPlane { on: true, normal: [0.6, -1.0, 0.7], offset: 0.17, ..ClipPlane::default() };
-    check("slabs by need, cut", DVec3::ONE, &settings);
+    check_slabs("slabs by need", settings);
 }
 
 #[test]
@@ -74,14 +79,7 @@ fn preintegrated_slabs() {
     let mut settings = scenes::look();
     settings.sampling.slabs = Slabs::Preintegrated;
     settings.sampling.kernel = Kernel::Prefiltered;
-    check("pre-integrated slabs", DVec3::ONE, &settings);
-    settings.sampling.slab = 1.6;
-    settings.camera.distance = 9.0;
-    check("pre-integrated slabs, stretched", DVec3::new(1.0, 0.8, 1.6), &settings);
-    settings = Settings { camera: scenes::look().camera, ..settings };
-    settings.cuts.plane =
-        ClipPlane { on: true, normal: [0.6, -1.0, 0.7], offset: 0.17, ..ClipPlane::default() };
-    check("pre-integrated slabs, cut", DVec3::ONE, &settings);
+    check_slabs("pre-integrated slabs", settings);
 }
 
 #[test]

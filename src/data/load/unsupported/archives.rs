@@ -5,12 +5,6 @@ use super::mark::Mark;
 
 pub(super) const FORMATS: &[UnsupportedFormat] = &[
     UnsupportedFormat {
-        what: "a file that was packed twice with gzip",
-        marks: &[Mark::Test(|look| look.is_gzip && look.has(0, b"\x1f\x8b\x08"))],
-        endings: &[],
-        help: "unpack it once: gunzip < IN.gz > OUT.gz",
-    },
-    UnsupportedFormat {
         what: "a ZIP archive of an OME-Zarr image",
         marks: &[
             Mark::Holding(0, b"PK\x03\x04", b".zattrs"),
