@@ -42,7 +42,7 @@ pub const PRESETS: [Preset; 22] = presets![
     "microscopy/stained_tissue": "Stained tissue",
     "simulation/fuel": "Spray",
     "simulation/cloud": "Vapour",
-    "simulation/signed": "Negative and positive",
+    "simulation/signed": "Plus and minus",
     "light/studio": "Studio",
     "light/overcast": "Overcast",
     "light/window": "Window light",
