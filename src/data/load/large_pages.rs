@@ -1,13 +1,13 @@
-//! Large pages for what volumes are read into: a system clears memory page by page when it is first written to, and half
-//! a gigabyte of small pages takes it longer than to read them.
+//! Huge pages for the memory of volumes: a system clears memory page by page at the first write, and for half a
+//! gigabyte of small pages that takes longer than reading.
 
-/// Bytes of a large page, on the processors that have them.
+/// Bytes of a huge page, on processors that have them.
 const LARGE_PAGE: usize = 2 << 20;
 
-/// Tells the system that memory will be filled from end to end, if it is worth a word. A hint: nothing depends on whether
-/// it is followed.
+/// Advises the system that memory will be filled from end to end, if it spans a huge page. Only a hint: correctness
+/// does not depend on it.
 pub(in crate::data::load) fn expect_to_fill<T>(start: *mut T, count: usize) {
-    // Whole pages alone: small ones are multiples of each other, and the allocation's ends belong to others, too.
+    // Only whole huge pages: those at the ends of the allocation are shared with other memory.
     let begin = start.addr().next_multiple_of(LARGE_PAGE);
     let end = start.addr().saturating_add(count.saturating_mul(size_of::<T>())) / LARGE_PAGE * LARGE_PAGE;
     if end > begin {
@@ -18,8 +18,8 @@ pub(in crate::data::load) fn expect_to_fill<T>(start: *mut T, count: usize) {
 #[cfg(target_os = "linux")]
 #[expect(unsafe_code, reason = "the system is told something of memory that is ours")]
 fn advise(start: *mut u8, bytes: usize) {
-    // SAFETY: the pages lie within one allocation of the caller's, and MADV_HUGEPAGE changes neither what they hold nor
-    // who may use them.
+    // SAFETY: the pages lie within one allocation of the caller, and MADV_HUGEPAGE changes neither their contents nor
+    // their access rights.
     let _hint = unsafe { libc::madvise(start.cast(), bytes, libc::MADV_HUGEPAGE) };
 }
 

@@ -1,9 +1,9 @@
-//! Volumes from files, and from folders of slices: `formats` says which, docs/FORMATS.md what of them.
+//! Loading of volumes from files, and from folders of slices; `formats` has the readers, docs/FORMATS.md the
+//! supported variants.
 //!
-//! Files are not trusted. Every size is checked against the file's length and the memory budget
-//! before anything is allocated; only regular files are opened; a header can name no file outside
-//! its own folder. Files are read in blocks into typed voxels, never mapped: the peak is the volume
-//! itself and one block.
+//! Files are not trusted. Every size is checked against the file's length and the memory budget before anything is
+//! allocated; only regular files are opened; a header can name no file outside its own folder. Files are read in
+//! blocks into typed voxels, never memory-mapped: the peak is the volume itself and one block.
 
 mod formats;
 mod large_pages;
@@ -34,31 +34,31 @@ use formats::{FileFormat, READERS, folder, recognize};
 use reading::input::{Input, Witness};
 use reading::reader::{Source, Start};
 
-/// The order of the bytes of one voxel.
+/// Byte order of numbers in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Endian {
-    /// The lowest byte first.
+    /// Least significant byte first (little-endian).
     Little,
-    /// The highest byte first.
+    /// Most significant byte first (big-endian).
     Big,
 }
 
-/// What the user says about loading.
+/// Options of the user for loading a volume.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadOptions {
-    /// How RAW files are stored; other formats say it themselves.
+    /// Layout of RAW files; other formats describe themselves.
     pub raw: RawFormat,
-    /// Which volume is meant where there are several, and how much of it is read.
+    /// Choice among several volumes, and the portion to read.
     pub choice: Choice,
-    /// Of a folder, the files that are meant; all of them where nothing is said.
+    /// Files of a folder to consider; all of them if `None`.
     pub among: Option<Arc<[PathBuf]>>,
-    /// The largest volume that is loaded, in bytes of its voxels.
+    /// Maximum size of a volume, in bytes of its voxels.
     pub memory_budget_bytes: u64,
 }
 
 impl Default for LoadOptions {
-    /// Nothing said about RAW files, every voxel kept; a budget of three quarters of the memory that is free now
-    /// (what the machine, its container and the user's limits leave), or 4 GiB where that is not known.
+    /// No layout for RAW files, all voxels; a budget of three quarters of the memory that is free now (within the
+    /// limits of the machine, its container and the user), or 4 GiB where that is unknown.
     fn default() -> Self {
         let (raw, choice) = (RawFormat::default(), Choice::default());
         Self { raw, choice, among: None, memory_budget_bytes: memory_budget_bytes() }
@@ -66,27 +66,28 @@ impl Default for LoadOptions {
 }
 
 impl LoadOptions {
-    /// What there is for a volume, and how much of it is wanted.
+    /// Limits and choices for a volume, to be checked before allocation.
     fn room<'a>(&'a self, control: &'a LoadControl) -> Room<'a> {
         Room { budget_bytes: self.memory_budget_bytes, choice: &self.choice, control }
     }
 }
 
-/// Loads a volume from a file, or from a folder of slices: all of it, or as much as `options` want.
+/// Loads a volume from a file, or from a folder of slices: all of it, or the portion that `options` select.
 ///
-/// A format is recognised by a file's first bytes, or else by its ending; when `options` give dimensions, a file that is
-/// not recognised is read as RAW.
+/// A format is recognised by a file's first bytes, or else by its extension; when `options` give dimensions, a file
+/// that is not recognised is read as RAW.
 ///
 /// # Errors
-/// [`LoadErrorKind::BadInput`] for a file or options that make no volume, or several ([`LoadError::Several`]), `Limit` for
-/// a volume over the budget, `Io` for what is not readable, or neither a file nor a folder, `Cancelled` when asked to stop.
+/// [`LoadErrorKind::BadInput`] for a file or options that make no volume, or several ([`LoadError::Several`]),
+/// `Limit` for a volume over the budget, `Io` for an unreadable path, or one that is neither a file nor a folder,
+/// `Cancelled` on cancellation.
 pub fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
     let portion = options.choice.portion.unwrap_or_default();
     let read = |are_labels: bool| {
         let (choice, watch) = Choice { are_labels, ..options.choice.clone() }.watched();
         let options = LoadOptions { choice, ..options.clone() };
         let volume = control.during(|| load_watched(path, &options, control));
-        // Whatever became of it.
+        // Cancellation takes precedence over the result.
         control.check()?;
         let volume = volume?;
         Attempt { what: "open the volume", path }.refuse_unasked(&options.choice, &watch)?;
@@ -94,7 +95,8 @@ pub fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result
         Ok::<_, LoadError>((watch.has_averaged() && volume.is_of_labels(), volume))
     };
     match read(false)? {
-        // What its file does not call labels is known for labels when it has been read: then of each block one voxel.
+        // Voxels may prove to be labels only after reading: then the file is read again, with the most frequent label
+        // of each block.
         (true, _) => read(true).map(|(_, volume)| volume),
         (false, volume) => Ok(volume),
     }
@@ -109,7 +111,7 @@ fn load_watched(path: &Path, options: &LoadOptions, control: &LoadControl) -> Re
     let mut input = Input::open(attempt)?;
     let witness = Witness::of(attempt, &input)?;
     let start = Start::of(&mut input).map_err(|error| attempt.io(error))?;
-    // Voxels that somebody describes may begin like that by chance.
+    // Voxels of a described raw file may begin like this by chance.
     if start.is_packed_twice() && options.raw.dims.is_none() {
         return Err(attempt.bad_input(
             "format",

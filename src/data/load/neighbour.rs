@@ -1,4 +1,5 @@
-//! What lies beside a volume: the file after it in its folder, or before it, and for a folder of slices the next folder.
+//! Neighbours of a volume on disk: the next or previous file of its folder, or for a folder of slices the next
+//! folder.
 
 use std::path::{Path, PathBuf};
 
@@ -9,20 +10,20 @@ use super::reading::reader::Start;
 use crate::data::attempt::Attempt;
 use crate::data::natural;
 
-/// Most entries of a folder that are looked at: as many as a folder of slices may have.
+/// Maximum number of entries of a folder: as many as a folder of slices may have.
 const MOST_ENTRIES: usize = 1 << 16;
 
-/// Endings of bare voxels that a header beside them describes.
+/// Extensions of raw data that a header beside them may describe.
 const DATA: [&str; 8] = [".raw.gz", ".raw", ".zraw", ".img.gz", ".img", ".bin", ".data", ".tri"];
 
-/// Endings of such headers.
+/// Extensions of headers of raw data.
 const HEADERS: [&str; 6] = [".nhdr", ".mhd", ".hdr", ".dat", ".ini", ".ivf"];
 
-/// The volume after one in natural order, or the one before it; behind the last there is none.
+/// Next or previous volume in natural order; `None` after the last.
 ///
-/// It is the nearest file of the same folder that a reader knows, by its content or its ending; for a folder the nearest
-/// one beside it in which there is such a file. Data that a header describes, and slices of the series that is open
-/// already, are no volumes of their own; whether others are one is for `is_wanted` to say.
+/// It is the nearest file of the same folder that a reader recognises by content or extension; for a folder, the
+/// nearest sibling that contains such a file. Data that a header describes, and slices of the series that is open, do
+/// not count; `is_wanted` can exclude further files.
 pub fn neighbour(
     path: &Path,
     is_forward: bool,
@@ -36,7 +37,7 @@ pub fn neighbour(
     let series = if is_folder { None } else { dicom::series_of(&path, control) };
     let is_next = |candidate: &&PathBuf| {
         if is_folder {
-            // Of so many a few tell.
+            // A few files are enough to judge a folder.
             const TOLD_BY: usize = 100;
             return self::entries(candidate, false).iter().take(TOLD_BY).any(|file| is_known(file));
         }
@@ -53,7 +54,7 @@ pub fn neighbour(
     }
 }
 
-/// The files of a folder, or its folders, in natural order; hidden ones are not meant.
+/// Lists the files of a folder, or its folders, in natural order; hidden ones are left out.
 fn entries(folder: &Path, are_folders: bool) -> Vec<PathBuf> {
     let found = std::fs::read_dir(folder).into_iter().flatten().flatten().take(MOST_ENTRIES);
     let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -66,14 +67,14 @@ fn entries(folder: &Path, are_folders: bool) -> Vec<PathBuf> {
     paths
 }
 
-/// Whether a reader knows the file.
+/// Returns true if a reader recognises the file.
 fn is_known(path: &Path) -> bool {
     let attempt = Attempt { what: "look at the file", path };
     let Ok(mut input) = Input::open(attempt) else { return false };
     Start::of(&mut input).is_ok_and(|start| reader_of(path, &start).is_some())
 }
 
-/// Whether a file holds the voxels of a header that has its name.
+/// Returns true if a file holds the voxels of a header of the same name.
 fn is_described(path: &Path, entries: &[PathBuf]) -> bool {
     let lower = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
     let name = lower(path);
@@ -100,7 +101,7 @@ mod tests {
         for name in ["a2.nrrd", "a10.nrrd", "a3.txt", "b.nhdr", "b.raw", "c.raw", ".hidden.nrrd"] {
             std::fs::write(path(name), "x").unwrap();
         }
-        // Known by its content alone.
+        // Recognised only by its content.
         std::fs::write(path("a9"), "NRRD0004\n").unwrap();
         let mut seen = vec!["a2.nrrd".to_owned()];
         while let Some(name) = next(&path(seen.last().unwrap()), true) {

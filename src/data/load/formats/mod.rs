@@ -1,4 +1,4 @@
-//! The formats that are read, and which of them a file has: by how it begins, or by its ending where that says nothing.
+//! Registry of the supported formats, and detection of a file's format: by its first bytes, or else by its extension.
 
 mod cube;
 pub(super) mod dicom;
@@ -29,7 +29,7 @@ use super::unsupported::{self, UnsupportedFormat};
 use super::{Choice, Dimension, Endian, LoadControl, LoadError, LoadOptions, Offer};
 use pictures::{slices, tiff};
 
-/// All formats, the surest marks first.
+/// All readers, those with the most specific signatures first.
 pub(super) const READERS: &[Reader] = &[
     nrrd::READER,
     numpy::NPY,
@@ -45,7 +45,7 @@ pub(super) const READERS: &[Reader] = &[
     vtk::LEGACY,
     mrc::READER,
     fits::READER,
-    // Without a mark: what has one comes first.
+    // Formats without a signature come after those with one.
     mgh::READER,
     cube::READER,
     raw::DAT,
@@ -54,28 +54,29 @@ pub(super) const READERS: &[Reader] = &[
     raw::READER,
 ];
 
-/// The format of a file.
+/// Detected format of a file.
 pub(super) enum FileFormat {
-    /// One that is read.
+    /// Supported format, with its reader.
     Reader(&'static Reader),
-    /// One that is known and not read.
+    /// Format that is recognised but not supported.
     Unsupported(&'static UnsupportedFormat),
-    /// None that is known.
+    /// No known format.
     Unknown,
 }
 
-/// Recognises the format of a file that is open at its beginning, where it stays: by its first bytes, or else by its ending.
+/// Detects the format of a file by its first bytes, or else by its extension. The file stays positioned at its
+/// beginning.
 pub(super) fn recognize(path: &Path, start: &Start, input: &mut Input, options: &LoadOptions) -> FileFormat {
-    // Who says how voxels are stored means that they are nothing else: the options, or a name.
+    // Dimensions in the options or a description in the name mean that the file is raw.
     let is_described = || options.raw.dims.is_some() || has_raw_ending(path) && raw::is_described(path);
     if let Some(reader) = by_content(start) {
-        // Its bytes are those of the other, and say nothing.
+        // Its content looks like another format, and is meaningless without its companion.
         return unsupported::disguised(path).map_or(FileFormat::Reader(reader), FileFormat::Unsupported);
     }
     if is_described() {
         return FileFormat::Reader(&raw::READER);
     }
-    // An archive of arrays is a ZIP archive, also where it has none.
+    // By extension, because an array archive may begin with an entry that is no array, or contain none at all.
     if has_ending(path, ".npz") && start.has(b"PK", 0) {
         return FileFormat::Reader(&numpy::NPZ);
     }
@@ -88,7 +89,7 @@ pub(super) fn recognize(path: &Path, start: &Start, input: &mut Input, options: 
     unsupported::by_name(path).map_or(FileFormat::Unknown, FileFormat::Unsupported)
 }
 
-/// The reader of a file, as far as its first bytes and its ending tell.
+/// Reader of a file by its first bytes or its extension.
 pub(super) fn reader_of(path: &Path, start: &Start) -> Option<&'static Reader> {
     by_content(start).or_else(|| by_ending(path))
 }
@@ -101,19 +102,19 @@ fn by_ending(path: &Path) -> Option<&'static Reader> {
     READERS.iter().find(|reader| reader.endings.iter().any(|ending| has_ending(path, ending)))
 }
 
-/// Whether a file is bare voxels by its ending.
+/// Returns true if the extension is that of raw voxels.
 fn has_raw_ending(path: &Path) -> bool {
     by_ending(path).is_some_and(|reader| reader.name == raw::READER.name)
 }
 
-/// Endings of all files that are read, for dialogs and messages.
+/// Extensions of all supported files, for dialogs and messages.
 pub fn endings() -> Vec<&'static str> {
     let mut all: Vec<&str> = READERS.iter().flat_map(|reader| reader.endings).copied().collect();
     all.dedup();
     all
 }
 
-/// Whether the file name ends in `ending` (lower case), in any case.
+/// Returns true if the file name ends in `ending` (lower case), ignoring case.
 fn has_ending(path: &Path, ending: &str) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
     name.ends_with(ending)

@@ -1,27 +1,27 @@
-//! Where a file is that another file names: below that one's folder, or nowhere.
+//! Resolution of the files that a header names: only inside the header's folder.
 //!
-//! A header comes from anywhere and names a path. Following it without a check would open private
-//! files, devices, or, on Windows, a foreign server that then learns the user's password hash. An archive can bring links
-//! as well as headers, so that these lead no further: within the folder, within the folder that a header lies in which is
-//! a link itself, and to where git-annex, `DataLad` and DVC keep the files of the repository that the folder is in.
+//! A header may come from anywhere, and it names a path. Following it without a check would open private files,
+//! devices, or, on Windows, a foreign server that then learns the user's password hash. An archive can contain links
+//! as well as headers, so that links are followed only within the folder, within the folder of the target where the
+//! header itself is a link, and to where git-annex, `DataLad` and DVC store the files of the repository that contains
+//! the folder.
 
 use std::path::{Path, PathBuf};
 
 use super::LoadError;
 use crate::data::attempt::{Attempt, quoted};
 
-/// Longest name that is looked for, and its longest part between slashes: as long as files' names can be (`NAME_MAX`),
-/// and four of those.
+/// Maximum length of a name, and of its parts between slashes: `NAME_MAX` of file systems, and four times that.
 const MOST_PART_BYTES: usize = 255;
 const MOST_NAME_BYTES: usize = 1024;
 
-/// The path of the file that the header in `attempt` names in a field.
+/// Path of the file that the header in `attempt` names in a field.
 ///
 /// # Errors
-/// `BadInput` for every name that leads out of the header's folder, by its text or over symbolic links; `Io` when there
-/// is no such file.
+/// `BadInput` for every name that leads out of the header's folder, by its text or through symbolic links; `Io` when
+/// there is no such file.
 ///
-/// The path goes through the header's folder: a link keeps the name that the header has for it.
+/// The path goes through the header's folder, so that a link keeps the name that the header has for it.
 pub(in crate::data::load) fn resolve(
     attempt: Attempt<'_>,
     field: &str,
@@ -35,7 +35,7 @@ pub(in crate::data::load) fn resolve(
         ));
     }
     let folder = folder_of(attempt.path).canonicalize().map_err(|error| attempt.io(error))?;
-    // Where the header is a link, its data may lie beside the link or beside the file that it leads to.
+    // If the header is a link, its data may lie beside the link or beside its target.
     let header = attempt.path.canonicalize().ok();
     let own = header.as_deref().map_or(folder.as_path(), folder_of);
     let is_there = |folder: &&Path| folder.join(name).symlink_metadata().is_ok();
@@ -65,24 +65,25 @@ pub(in crate::data::load) fn resolve(
     Ok(beside)
 }
 
-/// Words for a link whose file is not there, as git-annex leaves it before the file is fetched.
+/// Message for a dangling link, as git-annex leaves it before the file is fetched.
 pub(crate) const LOST_LINK: &str = "it is a link to a file that is not there";
 pub(crate) const LOST_LINK_HELP: &str =
     "fetch the file that it leads to (datalad get, git annex get, dvc pull), or copy it here";
 
-/// Folder of a file.
+/// Folder that contains a file.
 fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// True where a file, without links in its path, lies where git-annex (`DataLad`) or DVC keep the files of a repository that a
-/// folder is in.
+/// True if a file, given by its canonical path, lies in the git-annex (`DataLad`) or DVC store of a repository that
+/// contains a folder.
 ///
-/// See <https://git-annex.branchable.com/internals/> and <https://dvc.org/doc/user-guide/project-structure/internal-files>.
+/// See <https://git-annex.branchable.com/internals/> and
+/// <https://dvc.org/doc/user-guide/project-structure/internal-files>.
 fn is_in_store(path: &Path, folder: &Path) -> bool {
     let within = |root: &Path| {
         let Ok(rest) = path.strip_prefix(root) else { return false };
-        // A repository within another one has its store below `.git/modules` of that.
+        // The store of a submodule is below `.git/modules` of the outer repository.
         let names: Vec<_> = rest.iter().collect();
         let has_objects = names.windows(2).any(|pair| pair[0] == "annex" && pair[1] == "objects");
         (rest.starts_with(".git") && has_objects) || rest.starts_with(".dvc/cache")
@@ -90,9 +91,9 @@ fn is_in_store(path: &Path, folder: &Path) -> bool {
     folder.ancestors().any(within)
 }
 
-/// How a name leaves the header's folder, as far as its text shows.
+/// Reason why a name leads out of the header's folder, judged by its text alone.
 ///
-/// Windows paths are refused on every system: a header means the same everywhere.
+/// Windows paths are refused on every system, so that a header means the same everywhere.
 fn leaves_by_text(name: &str) -> Option<&'static str> {
     let bytes = name.as_bytes();
     if name.is_empty() {

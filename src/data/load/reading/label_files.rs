@@ -1,7 +1,7 @@
-//! Names and colours of labels in a text file beside a label map: as ITK-SNAP writes them ("label descriptions"), or
-//! `FreeSurfer` (colour tables: <https://surfer.nmr.mgh.harvard.edu/fswiki/LabelsClutsAnnotationFiles>).
+//! Label names and colours from a text file beside a label map: ITK-SNAP label descriptions, or `FreeSurfer` colour
+//! tables (<https://surfer.nmr.mgh.harvard.edu/fswiki/LabelsClutsAnnotationFiles>).
 //!
-//! Nothing names such a file: it is called like the volume.
+//! No header names such a file: it is found by the volume's file name.
 
 use std::path::Path;
 
@@ -10,11 +10,11 @@ use super::input::bare_name;
 use crate::data::attempt::Attempt;
 use crate::data::{Hints, Labels, Meaning, Samples, read_small};
 
-/// Endings of such files, the surest first.
+/// Extensions of label tables, the most specific first.
 const ENDINGS: [&str; 4] = [".ctab", ".label", ".lut", ".txt"];
 
-/// Says what labels are called where a file beside a volume tells, and with that that they are labels: only where
-/// all values are whole.
+/// Reads the label table beside a volume, if there is one, and marks the volume as a label map; only where all values
+/// are integers.
 pub(in crate::data::load) fn add(
     attempt: Attempt<'_>,
     endings: &[&str],
@@ -31,14 +31,14 @@ pub(in crate::data::load) fn add(
     }
 }
 
-/// What a file says that is called like the volume (without one of the volume's `endings`) and lies beside it; nothing
-/// where there is none, or where it is something else.
+/// Labels of the table beside the volume that has the volume's file name without its extension (one of `endings`);
+/// empty where there is no such file, or where it is not a label table.
 fn told_beside(attempt: Attempt<'_>, endings: &[&str]) -> Labels {
     let stem = bare_name(attempt.path, endings);
     let folder = attempt.path.parent().unwrap_or(Path::new(""));
     let found = ENDINGS.iter().find_map(|ending| {
         let name = format!("{stem}{ending}");
-        // Looked for first: that there is none is usual.
+        // Checked before opening: usually there is no such file.
         if !folder.join(&name).is_file() {
             return None;
         }
@@ -48,7 +48,7 @@ fn told_beside(attempt: Attempt<'_>, endings: &[&str]) -> Labels {
     found.unwrap_or_default()
 }
 
-/// Whether no value has a fraction.
+/// Returns true if no value has a fractional part.
 pub(crate) fn is_whole(samples: &Samples) -> bool {
     match samples {
         Samples::F32(values) => values.iter().all(|value| value.fract() == 0.0),
@@ -57,7 +57,7 @@ pub(crate) fn is_whole(samples: &Samples) -> bool {
     }
 }
 
-/// The labels of a table. `None` for any other text: a line that is no entry shows that.
+/// Parses a label table; `None` for any other text: one line that is not an entry is enough.
 fn table(text: &str) -> Option<Labels> {
     let mut labels = Labels::default();
     for line in text.trim_start_matches('\u{feff}').lines() {
@@ -71,7 +71,7 @@ fn table(text: &str) -> Option<Labels> {
     (!labels.is_empty()).then_some(labels)
 }
 
-/// `IDX R G B A VIS MSH "LABEL"`.
+/// Parses an ITK-SNAP entry: `IDX R G B A VIS MSH "LABEL"`.
 fn snap_entry(line: &str) -> Option<(i64, &str, [f32; 3])> {
     let (numbers, rest) = line.split_once('"')?;
     let (name, after) = rest.rsplit_once('"')?;
@@ -82,7 +82,7 @@ fn snap_entry(line: &str) -> Option<(i64, &str, [f32; 3])> {
     (are_numbers && after.trim().is_empty()).then_some(entry)
 }
 
-/// `No. Name R G B A`; a name may have spaces, and A be missing.
+/// Parses a `FreeSurfer` entry: `No. Name R G B A`; the name may contain spaces, and A may be missing.
 fn freesurfer_entry(line: &str) -> Option<(i64, &str, [f32; 3])> {
     let (number, rest) = line.split_once(char::is_whitespace)?;
     let number = number.parse().ok()?;
@@ -95,12 +95,12 @@ fn freesurfer_entry(line: &str) -> Option<(i64, &str, [f32; 3])> {
         name = before.trim_end();
     }
     let &[red, green, blue, ..] = &numbers[..] else { return None };
-    // Rows of numbers alone are something else.
+    // A row of numbers without a name is not a label.
     name.contains(char::is_alphabetic).then_some(())?;
     Some((number, name, color([red, green, blue])?))
 }
 
-/// sRGB in bytes as parts of 1.
+/// Converts sRGB bytes written as text to components from 0 to 1.
 fn color(words: [&str; 3]) -> Option<[f32; 3]> {
     let mut color = [0.0; 3];
     for (part, word) in color.iter_mut().zip(words) {

@@ -1,4 +1,4 @@
-//! What readers of all formats share: files, numbers, places, and what stands beside a file.
+//! Parts that the readers of all formats share: files, numbers, placement, and companion files.
 
 pub(super) mod beside;
 pub(super) mod content;

@@ -1,5 +1,5 @@
-//! Numbers as files have them to voxels as volumes have them: also of types that volumes have not, and of several
-//! numbers for each voxel.
+//! Conversion of the number types of files to those of volumes, including types that volumes lack (64-bit integers,
+//! half floats) and voxels of several components.
 
 use std::io::Read;
 
@@ -10,7 +10,7 @@ use super::{Endian, LoadControl, LoadError};
 use crate::data::attempt::{Attempt, Extent};
 use crate::data::{Samples, VoxelType};
 
-/// A number type of files.
+/// Number type of voxels in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::data::load) enum Number {
     U8,
@@ -27,7 +27,7 @@ pub(in crate::data::load) enum Number {
 }
 
 impl Number {
-    /// That of voxels as they are.
+    /// Returns the number type that equals a voxel type.
     pub(in crate::data::load) const fn of(voxel_type: VoxelType) -> Self {
         match voxel_type {
             VoxelType::U8 => Self::U8,
@@ -41,7 +41,7 @@ impl Number {
         }
     }
 
-    /// Size of one in bytes.
+    /// Size of a number, in bytes.
     pub(in crate::data::load) const fn bytes(self) -> usize {
         match self {
             Self::U8 | Self::I8 => 1,
@@ -51,7 +51,7 @@ impl Number {
         }
     }
 
-    /// The type of the voxels that they become, at most: whole numbers of 64 bits that need no more take 32.
+    /// Type of the resulting voxels at most: 64-bit integers whose values fit into 32 bits take only 32.
     pub(in crate::data::load) const fn voxel_type(self) -> VoxelType {
         match self {
             Self::U8 => VoxelType::U8,
@@ -65,7 +65,7 @@ impl Number {
         }
     }
 
-    /// Whether voxels have the type as it is.
+    /// Returns true if volumes have this number type, so that no conversion is needed.
     const fn is_kept(self) -> bool {
         !matches!(self, Self::U64 | Self::I64 | Self::F16)
     }
@@ -74,7 +74,7 @@ impl Number {
         matches!(self, Self::U64 | Self::I64)
     }
 
-    /// The value of some bytes, as many as one has.
+    /// Decodes a number from its bytes; `bytes` has the length of the type.
     pub(in crate::data::load) fn value(self, bytes: &[u8], endian: Endian) -> f64 {
         match self {
             Self::U8 => f64::from(u8::from_bytes(bytes, endian)),
@@ -92,35 +92,35 @@ impl Number {
     }
 }
 
-/// What of the several numbers of a voxel is shown.
+/// Scalar that is derived from a voxel of several components.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::data::load) enum Part {
-    /// One of them, from 0.
+    /// Index of a component, from 0.
     Component(usize),
-    /// The length of a vector.
+    /// Euclidean length of a vector.
     Magnitude,
-    /// How light a colour is, as a standard for television weighs red, green and blue (ITU-R BT.709). What comes after
-    /// them, as opacity does, does not count.
+    /// Luminance of a colour: weights of red, green and blue after ITU-R BT.709. Further components, such as opacity,
+    /// do not count.
     Luminance,
 }
 
-/// How the voxels of a file are stored: one after the other, x fastest, the numbers of one beside each other.
+/// Storage of a file's voxels: contiguous, x fastest, components interleaved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::data::load) struct Stored {
     pub(in crate::data::load) number: Number,
     pub(in crate::data::load) endian: Endian,
-    /// Numbers of each voxel.
+    /// Number of components per voxel.
     pub(in crate::data::load) components: usize,
     pub(in crate::data::load) part: Part,
 }
 
 impl Stored {
-    /// Voxels of a number each.
+    /// Storage of scalar voxels, one number each.
     pub(in crate::data::load) fn scalar(number: Number, endian: Endian) -> Self {
         Self { number, endian, components: 1, part: Part::Component(0) }
     }
 
-    /// The type of the voxels that are read, at most.
+    /// Type of the voxels after reading, at most.
     pub(in crate::data::load) fn voxel_type(&self) -> VoxelType {
         match (self.part, self.number) {
             (Part::Component(_), number) => number.voxel_type(),
@@ -129,12 +129,13 @@ impl Stored {
         }
     }
 
-    /// Bytes of a voxel in the file.
+    /// Bytes per voxel in the file, all components together.
     pub(in crate::data::load) fn bytes_of_voxel(&self) -> u64 {
         self.number.bytes() as u64 * self.components as u64
     }
 
-    /// Reads what is kept of a grid's voxels, which are values as they are stored; what follows them is left alone.
+    /// Reads the selected voxels of a grid, whose values are the stored numbers; bytes after the grid are not
+    /// touched.
     pub(in crate::data::load) fn read(
         &self,
         reader: &mut impl Read,
@@ -144,8 +145,8 @@ impl Stored {
         self.read_meant(reader, None, extent, &Meant::as_stored(None), control)
     }
 
-    /// Reads what is kept of a grid's voxels as values; what follows them is left alone. What is left out is leapt over
-    /// where the reader can.
+    /// Reads the selected voxels of a grid and converts them to values; bytes after the grid are not touched. Skipped
+    /// voxels are seeked over where the reader can seek.
     pub(in crate::data::load) fn read_meant<R: Read>(
         &self,
         reader: &mut R,
@@ -178,7 +179,7 @@ impl Stored {
             control.start(part.bytes);
             self.read_all(&mut sieve, part, control).and_then(|samples| Ok((meant.values)(samples)?.into()))
         };
-        // To where the grid ends: what is left out must be there, too.
+        // To the end of the grid: truncated data are an error even where the missing voxels are not selected.
         let ended = read.and_then(|voxels| fill(&mut sieve, &mut [0], control).map(|_none| voxels));
         ended.map_err(|fault| match sieve.fault.take().unwrap_or(fault) {
             Fault::Short { .. } => Fault::Short { got: sieve.voxels_passed() * voxel_type.bytes() as u64 },
@@ -186,7 +187,7 @@ impl Stored {
         })
     }
 
-    /// Whether voxels have these numbers as they are, but for the order of their bytes.
+    /// Returns true if the voxels lie in the file as in memory, up to byte order.
     pub(super) fn is_as_in_memory(&self) -> bool {
         self.components == 1 && self.number.is_kept()
     }
@@ -262,8 +263,8 @@ impl Stored {
 }
 
 impl Part {
-    /// What is shown of vectors or colours of so many components: the component that the user has named, or what all of
-    /// them make. `None` where there is no such component.
+    /// Scalar to derive from vectors or colours of `components` components: the component that the user has chosen,
+    /// or else the magnitude or luminance. `None` if there is no such component.
     pub(in crate::data::load) fn chosen(
         component: Option<usize>,
         components: usize,
@@ -273,13 +274,13 @@ impl Part {
             Some(at) => (at < components).then_some(Self::Component(at)),
             None if components == 1 => Some(Self::Component(0)),
             None if is_color && components >= 3 => Some(Self::Luminance),
-            // Grey and its opacity.
+            // Grey with opacity: the opacity is ignored.
             None if is_color => Some(Self::Component(0)),
             None => Some(Self::Magnitude),
         }
     }
 
-    /// As [`Self::chosen`], with the error for a component that is not there.
+    /// Calls [`Self::chosen`] and turns a missing component into an error.
     pub(in crate::data::load) fn asked(
         attempt: Attempt<'_>,
         component: Option<usize>,
@@ -298,7 +299,7 @@ impl Part {
         })
     }
 
-    /// What the user is told where not all of a voxel is seen.
+    /// Remark for the user that voxels are reduced to a scalar; `None` for a single component.
     pub(in crate::data::load) fn remark(self) -> Option<&'static str> {
         match self {
             Self::Component(_) => None,
@@ -307,7 +308,7 @@ impl Part {
         }
     }
 
-    /// What is shown of a voxel with such components.
+    /// Derives the scalar from a voxel, given its components.
     pub(in crate::data::load) fn of(self, component: impl Fn(usize) -> f64, components: usize) -> f64 {
         match self {
             Self::Component(at) => component(at),
@@ -317,7 +318,7 @@ impl Part {
     }
 }
 
-/// Whole numbers in 32 bits where they need no more.
+/// Narrows integers to 32 bits where all values fit.
 fn narrowed(samples: Samples) -> Samples {
     let Samples::F64(values) = &samples else { return samples };
     let within = |low: f64, high: f64| values.iter().all(|&value| (low..=high).contains(&value));

@@ -1,4 +1,4 @@
-//! Where a file's voxels lie in the world, and a volume of all that was read.
+//! Placement of a file's grid in world space, and assembly of the volume from all that was read.
 
 use std::time::Instant;
 
@@ -9,24 +9,24 @@ use super::voxels::Voxels;
 use crate::data::attempt::{Attempt, Extent, is_usable_affine, is_usable_spacing, unlike_spacings};
 use crate::data::{Hints, Samples, ValueRange, Volume};
 
-/// Where voxels lie: as the file says it, mended where it says what cannot be.
+/// Affine transform of the grid as the file gives it, with implausible values corrected.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::data::load) struct Placement {
-    /// Voxel indices (centres at whole numbers) to millimetres; right-anterior-superior where it
-    /// [is anatomical](Self::is_anatomical).
+    /// Transform from voxel indices (centres at integers) to millimetres; right-anterior-superior where it [is
+    /// anatomical](Self::is_anatomical).
     pub(in crate::data::load) world_from_index: DAffine3,
-    /// Whether the file says which way a body lies.
+    /// True if the file gives the anatomical orientation.
     pub(in crate::data::load) is_anatomical: bool,
-    /// Whether the file says how large voxels are; else they are 1, and nobody knows of what.
+    /// True if the file gives the size of voxels; otherwise it is 1 in an unknown unit.
     pub(in crate::data::load) is_scale_known: bool,
-    /// Millimetres of the unit in which the file says lengths.
+    /// Unit of length in the file, in millimetres.
     pub(in crate::data::load) length_unit_mm: f64,
-    /// What was mended, for the user.
+    /// Corrections that were made, as remarks for the user.
     pub(in crate::data::load) remarks: Vec<String>,
 }
 
 impl Placement {
-    /// Voxels of which nothing is known.
+    /// Placement for files without any geometry: unit spacing, unknown scale.
     pub(in crate::data::load) fn unknown() -> Self {
         Self {
             world_from_index: DAffine3::IDENTITY,
@@ -37,7 +37,7 @@ impl Placement {
         }
     }
 
-    /// Voxels so far apart, along the axes of the world.
+    /// Placement by spacing alone, along the world axes.
     pub(in crate::data::load) fn spaced(spacing_mm: [f64; 3]) -> Self {
         let mut remarks = Vec::new();
         let spacing_mm = mended(spacing_mm, &mut remarks);
@@ -45,8 +45,8 @@ impl Placement {
         Self { world_from_index, remarks, is_scale_known: true, ..Self::unknown() }
     }
 
-    /// Voxels that lie as a file's affine says, in right-anterior-superior millimetres. Where it has no three usable axes,
-    /// as far apart as its columns are long.
+    /// Placement by a file's affine transform, in right-anterior-superior millimetres. If its axes are degenerate,
+    /// only the lengths of its columns are used, as spacing.
     pub(in crate::data::load) fn ras(world_from_index: DAffine3) -> Self {
         let axes = world_from_index.matrix3;
         let lengths = [axes.x_axis, axes.y_axis, axes.z_axis].map(DVec3::length);
@@ -60,31 +60,31 @@ impl Placement {
         placement
     }
 
-    /// As [`Self::ras`], in left-posterior-superior millimetres.
+    /// Placement by an affine transform in left-posterior-superior millimetres; see [`Self::ras`].
     pub(in crate::data::load) fn lps(world_from_index: DAffine3) -> Self {
         let ras_from_lps = DMat3::from_diagonal(DVec3::new(-1.0, -1.0, 1.0));
         Self::ras(DAffine3::from_mat3(ras_from_lps) * world_from_index)
     }
 
-    /// The same where the file does not say which way a body lies.
+    /// Marks the anatomical orientation as unknown.
     #[must_use]
     pub(in crate::data::load) fn of_no_body(self) -> Self {
         Self { is_anatomical: false, ..self }
     }
 
-    /// The same where the file says how distances compare, and not how long they are.
+    /// Marks the scale as unknown, where the file gives relative distances only.
     #[must_use]
     pub(in crate::data::load) fn of_unknown_scale(self) -> Self {
         Self { is_scale_known: false, ..self }
     }
 
-    /// The same where the file says lengths in a unit of so many millimetres.
+    /// Sets the unit of length in the file, in millimetres.
     #[must_use]
     pub(in crate::data::load) fn said_in(self, length_unit_mm: f64) -> Self {
         Self { length_unit_mm, ..self }
     }
 
-    /// The same with something that the user is told.
+    /// Adds a remark for the user.
     #[must_use]
     pub(in crate::data::load) fn remarked(mut self, remark: Option<impl Into<String>>) -> Self {
         self.remarks.extend(remark.map(Into::into));
@@ -92,8 +92,7 @@ impl Placement {
     }
 }
 
-/// Distances that can be used, in place of those that cannot: 1 where they say nothing, all 1 where they cannot be meant
-/// together.
+/// Replaces unusable spacings: a missing or invalid one by 1, all of them by 1 where their ratios are implausible.
 fn mended(spacing_mm: [f64; 3], remarks: &mut Vec<String>) -> DVec3 {
     let mend = |length: f64| if is_usable_spacing(length.abs()) { length.abs() } else { 1.0 };
     let mut usable = spacing_mm.map(mend);
@@ -110,28 +109,28 @@ fn mended(spacing_mm: [f64; 3], remarks: &mut Vec<String>) -> DVec3 {
     DVec3::from(usable)
 }
 
-/// All that was read of a volume.
+/// Everything that was read of a volume, before it is assembled.
 #[derive(Debug)]
 pub(in crate::data::load) struct Parts {
     pub(in crate::data::load) name: String,
-    /// The grid, what was read of it and what is wanted.
+    /// Grid size, the part that was read and the part that is wanted.
     pub(in crate::data::load) extent: Extent,
-    /// Where the grid lies.
+    /// Placement of the grid in world space.
     pub(in crate::data::load) placement: Placement,
     pub(in crate::data::load) voxels: Voxels,
     pub(in crate::data::load) hints: Hints,
 }
 
 impl Parts {
-    /// The volume: what is wanted of what was read.
+    /// Assembles the volume from the wanted part of the voxels that were read.
     ///
     /// # Errors
-    /// `BadInput` where the parts make none: no value is finite, or values span more than a number can say.
+    /// `BadInput` where the parts are no valid volume: no value is finite, or the value range overflows.
     pub(in crate::data::load) fn volume(self, attempt: Attempt<'_>) -> Result<Volume, LoadError> {
         self.volume_or(attempt, "check the header against the data")
     }
 
-    /// The same with other help.
+    /// Assembles the volume as [`Self::volume`] does, with another help text for errors.
     pub(in crate::data::load) fn volume_or(
         self,
         attempt: Attempt<'_>,
@@ -153,7 +152,7 @@ impl Parts {
                 if placement.is_scale_known { volume } else { volume.with_unknown_scale() }
             });
             made.and_then(|volume| match volume.hints().padding {
-                // A volume of padding alone is shown as it is.
+                // A volume of nothing but padding is shown as it is.
                 Some(padding) if volume.value_range() != ValueRange::new(padding, padding) => {
                     volume.with_padding(padding)
                 }
@@ -161,7 +160,8 @@ impl Parts {
             })
         };
         let Voxels { samples, picked } = voxels;
-        // Means of labels say nothing: whoever sees that these are labels reads them again.
+        // Means of labels are meaningless: where the first voxels of the blocks prove to be labels, they are used
+        // instead, and the caller reads the file again.
         let labels = picked.and_then(|picked| of(picked).ok()).filter(Volume::is_of_labels);
         let volume = labels.map_or_else(|| of(samples), Ok).and_then(|volume| volume.portion(&read, &wanted));
         let volume = volume.map(|volume| volume.with_looking_took(start.elapsed()));

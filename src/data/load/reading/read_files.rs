@@ -1,4 +1,5 @@
-//! Which files are read, for who must not write over one of them: a header names others, and a slice brings its series.
+//! Record of the files that are read, so that no output overwrites one of them: a header names others, and a slice
+//! brings its series.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -6,15 +7,15 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 type Paths = Mutex<BTreeSet<PathBuf>>;
 
-/// Who wants to know.
+/// Recorders that are still alive.
 static WATCHES: Mutex<Vec<Weak<Paths>>> = Mutex::new(Vec::new());
 
-/// The files that any thread of this process has read voxels, or what is said of them, from since it was made.
+/// Files that any thread of this process has read voxels or metadata from since this recorder was made.
 #[derive(Debug)]
 pub struct ReadFiles(Arc<Paths>);
 
 impl ReadFiles {
-    /// Begins to take notes.
+    /// Starts recording the files that are read.
     pub fn watch() -> Self {
         let paths = Arc::<Paths>::default();
         let mut watches = WATCHES.lock().unwrap_or_else(PoisonError::into_inner);
@@ -23,13 +24,13 @@ impl ReadFiles {
         Self(paths)
     }
 
-    /// What was read until now, by the names that it was opened by.
+    /// Paths that were read so far, as they were opened.
     pub fn paths(&self) -> Vec<PathBuf> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()
     }
 }
 
-/// Notes that a file is read.
+/// Adds a path to all active recorders.
 pub(in crate::data::load) fn note(path: &Path) {
     for watch in WATCHES.lock().unwrap_or_else(PoisonError::into_inner).iter().filter_map(Weak::upgrade) {
         watch.lock().unwrap_or_else(PoisonError::into_inner).insert(path.to_owned());

@@ -1,4 +1,4 @@
-//! What a format is told by, and what its reader is given.
+//! Interface of a format's reader: how its files are recognised, and the source that it reads from.
 
 use std::io::{self, BufReader, Read, Seek as _};
 use std::path::Path;
@@ -12,37 +12,38 @@ use super::{Dimension, LoadControl, LoadError, LoadOptions, Offer};
 use crate::data::Volume;
 use crate::data::attempt::{Attempt, Extent};
 
-/// Bytes of a file's beginning that are looked at: a header of NIfTI-2 has 540, DICOM's mark ends at 132.
+/// Bytes of a file's beginning that are inspected to recognise it: a NIfTI-2 header has 540, the DICOM magic ends at
+/// 132.
 const START_BYTES: usize = 1024;
 
-/// Most volumes that a file may offer by their numbers: more than any list can be chosen from.
+/// Maximum number of volumes that a file may offer by index: more than can be chosen from a list.
 const MOST_OFFERS: u64 = 1 << 16;
 
-/// What may follow the voxels that are read.
+/// Content that may follow the voxels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::data::load) enum After {
-    /// Anything.
+    /// Anything may follow the voxels.
     More,
-    /// The end of the content.
+    /// The content must end with the voxels.
     End,
 }
 
-/// A format.
+/// Reader of a file format.
 pub(in crate::data::load) struct Reader {
-    /// What messages and menus call it.
+    /// Name of the format in messages and menus.
     pub(in crate::data::load) name: &'static str,
-    /// Endings of its files, in lower case and with their dots.
+    /// Extensions of its files, in lower case and with their dots.
     pub(in crate::data::load) endings: &'static [&'static str],
-    /// Whether a file that begins like this is one, whatever it is called.
+    /// Returns true if a file with this beginning has the format, whatever its name.
     pub(in crate::data::load) recognises: fn(&Start) -> bool,
-    /// Reads such a file.
+    /// Reads a file of the format.
     pub(in crate::data::load) load: fn(Source<'_>) -> Result<Volume, LoadError>,
 }
 
-/// A file to be read.
+/// File to be read, with its options.
 pub(in crate::data::load) struct Source<'a> {
     pub(in crate::data::load) path: &'a Path,
-    /// Open at its beginning.
+    /// Handle, positioned at the file's beginning.
     pub(in crate::data::load) input: Input,
     pub(in crate::data::load) start: Start,
     pub(in crate::data::load) options: &'a LoadOptions,
@@ -50,9 +51,9 @@ pub(in crate::data::load) struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// What the file holds from its beginning: inflated where it is compressed as a whole.
+    /// Content of the file from its beginning, inflated where the whole file is compressed.
     ///
-    /// Whoever reads it takes no more than was announced: a compressed file may hold anything.
+    /// Callers must limit how much they read: a compressed file may expand to any size.
     pub(in crate::data::load) fn content(&mut self) -> Box<dyn Read + '_> {
         if self.start.is_gzip() {
             Box::new(BufReader::new(GzipMembers::new(&mut self.input.reader)))
@@ -61,11 +62,11 @@ impl Source<'_> {
         }
     }
 
-    /// Reads what is kept of the voxels of a grid, which begin at byte `at` of the content. There must be enough, as far as
-    /// this shows in a compressed file, before anything is allocated.
+    /// Reads the selected voxels of a grid that begins at byte `at` of the content. The length is checked before
+    /// anything is allocated; for compressed files against the largest possible inflated size.
     ///
     /// # Errors
-    /// `BadInput` for data that are too short, too long or broken, with `help`; `Limit` where the memory is not there.
+    /// `BadInput` for data that are too short, too long or corrupt, with `help`; `Limit` where memory is exhausted.
     pub(in crate::data::load) fn voxels(
         &mut self,
         attempt: Attempt<'_>,
@@ -100,14 +101,14 @@ impl Source<'_> {
             return read.map_err(|fault| fault.into_error(attempt, &layout, "bytes", help));
         }
         let skip = at;
-        // One byte more than needed tells "too much" from "enough", and no bomb gets further.
+        // One byte more than needed distinguishes "too much" from "enough", and limits decompression bombs.
         let mut content = self.content().take(skip.saturating_add(needed).saturating_add(1));
         let mut read = || {
             if skip_bytes(&mut content, skip, control)? < skip {
                 return Err(Fault::Short { got: 0 });
             }
             let voxels = stored.read(&mut content, extent, control)?;
-            // Also makes the decoder look at the checksum, where nothing else follows.
+            // Also makes the decoder verify the checksum, where nothing else follows.
             if fill(&mut content, &mut [0], control)? > 0 && after == After::End {
                 return Err(Fault::Long);
             }
@@ -122,10 +123,10 @@ impl Source<'_> {
         })
     }
 
-    /// Which of so many volumes of a dimension is meant, each with a name that may be empty.
+    /// Index of the chosen one of `count` volumes along a dimension; their names may be empty.
     ///
     /// # Errors
-    /// As [`Attempt::chosen`]; `Limit` for more than anybody can choose from.
+    /// As [`Attempt::chosen`]; `Limit` for more than [`MOST_OFFERS`].
     pub(in crate::data::load) fn numbered(
         &self,
         attempt: Attempt<'_>,
@@ -145,10 +146,10 @@ impl Source<'_> {
         attempt.chosen(&self.options.choice, dimension, offers)
     }
 
-    /// What is shown of voxels of several numbers.
+    /// Scalar to derive from voxels of several components, by the user's choice.
     ///
     /// # Errors
-    /// `BadInput` where the user has named a component that there is not.
+    /// `BadInput` where the user has chosen a component that does not exist.
     pub(in crate::data::load) fn part(
         &self,
         attempt: Attempt<'_>,
@@ -160,22 +161,22 @@ impl Source<'_> {
     }
 }
 
-/// How a file begins.
+/// First bytes of a file, as stored and inflated.
 pub(in crate::data::load) struct Start {
     stored: Vec<u8>,
-    /// What the file holds, where it is compressed as a whole.
+    /// First bytes of the content, where the whole file is compressed.
     inflated: Option<Vec<u8>>,
 }
 
 impl Start {
-    /// Looks at a file, and goes back to its beginning.
+    /// Reads the first bytes of an input, and seeks back to its beginning.
     pub(in crate::data::load) fn of(input: &mut Input) -> io::Result<Self> {
         let mut stored = Vec::with_capacity(START_BYTES);
         input.reader.by_ref().take(START_BYTES as u64).read_to_end(&mut stored)?;
         input.reader.rewind()?;
         let inflated = is_gzip(&stored).then(|| {
             let mut found = Vec::new();
-            // What is broken, or cut off where the look ends, says what it says until there.
+            // A stream that is corrupt, or that the limit cuts off, still yields the bytes before that.
             let mut decoder = GzipMembers::new(&mut input.reader).take(START_BYTES as u64);
             let _how_far = decoder.read_to_end(&mut found);
             found
@@ -184,27 +185,27 @@ impl Start {
         Ok(Self { stored, inflated })
     }
 
-    /// The first bytes of what the file holds, inflated where it is compressed.
+    /// First bytes of the content, inflated where the file is compressed.
     pub(in crate::data::load) fn bytes(&self) -> &[u8] {
         self.inflated.as_ref().unwrap_or(&self.stored)
     }
 
-    /// The first bytes of the file.
+    /// First bytes of the file as stored.
     pub(in crate::data::load) fn stored(&self) -> &[u8] {
         &self.stored
     }
 
-    /// Whether the file is compressed as a whole.
+    /// Returns true if the whole file is compressed.
     pub(in crate::data::load) fn is_gzip(&self) -> bool {
         self.inflated.is_some()
     }
 
-    /// True where the content of a compressed file is compressed once more.
+    /// True if the content of a compressed file is compressed once more.
     pub(crate) fn is_packed_twice(&self) -> bool {
         self.inflated.as_deref().is_some_and(is_gzip)
     }
 
-    /// Whether the content has some bytes at a place.
+    /// Returns true if the content has `bytes` at offset `at`.
     pub(in crate::data::load) fn has(&self, bytes: &[u8], at: usize) -> bool {
         self.bytes().get(at..).is_some_and(|rest| rest.starts_with(bytes))
     }

@@ -1,4 +1,4 @@
-//! Values as a file means them: times a slope, and an intercept added.
+//! Rescaling of stored numbers to values: slope and intercept.
 
 use super::LoadError;
 use super::samples::{Fault, reserve};
@@ -7,11 +7,11 @@ use crate::data::interrupt::{Interrupt, PIECE};
 use crate::data::values::samples::with_samples;
 use crate::data::{Samples, VoxelType};
 
-/// Rescales values. They stay whole numbers where that is exact; numbers of the same size take the place of those that
-/// were read, others are made beside them.
+/// Rescales values. They stay integers where that is exact. Numbers of equal size are converted in place, others into
+/// new memory.
 ///
 /// # Errors
-/// `Limit` where both together need more than `budget_bytes`, or the memory is not there.
+/// `Limit` where both buffers together exceed `budget_bytes`, or memory is exhausted.
 pub(in crate::data::load) fn rescaled(
     attempt: Attempt<'_>,
     samples: Samples,
@@ -49,7 +49,7 @@ pub(in crate::data::load) fn rescaled(
     converted(samples, voxel_type, |value| value.mul_add(slope, intercept)).map_err(|_no_memory| too_large())
 }
 
-/// The type of the values: of whole numbers the first that holds all, where they stay whole.
+/// Type of the rescaled values: the smallest integer type that holds all of them exactly, else floating point.
 fn rescaled_type(samples: &Samples, slope: f64, intercept: f64) -> VoxelType {
     let is_integer = !matches!(samples, Samples::F32(_) | Samples::F64(_));
     let is_wide = matches!(samples, Samples::U32(_) | Samples::I32(_) | Samples::F64(_));
@@ -73,7 +73,7 @@ fn rescaled_type(samples: &Samples, slope: f64, intercept: f64) -> VoxelType {
     if is_wide { VoxelType::F64 } else { VoxelType::F32 }
 }
 
-/// A number type to which values are cast.
+/// Number type that values are cast to.
 trait Cast {
     fn of(value: f64) -> Self;
 }
@@ -95,7 +95,7 @@ impl Cast for f64 {
     }
 }
 
-/// Values in another type.
+/// Converts values to another number type, applying `value` to each.
 #[expect(trivial_numeric_casts, reason = "one of the eight types is f64 already")]
 fn converted(samples: Samples, voxel_type: VoxelType, value: impl Fn(f64) -> f64) -> Result<Samples, Fault> {
     macro_rules! in_type {
@@ -111,10 +111,10 @@ fn converted(samples: Samples, voxel_type: VoxelType, value: impl Fn(f64) -> f64
     in_type!(U8, I8, U16, I16, U32, I32, F32, F64)
 }
 
-/// Other values in the place of some.
+/// Maps values one by one, in place where the sizes of the types are equal.
 fn each<T: Copy, R>(values: Vec<T>, value: impl Fn(T) -> R) -> Result<Vec<R>, Fault> {
     if size_of::<T>() == size_of::<R>() {
-        // Collecting goes on in the same memory.
+        // Collecting reuses the allocation.
         return Ok(values.into_iter().map(value).collect());
     }
     let mut others = reserve(values.len())?;
@@ -157,7 +157,7 @@ mod tests {
     #[test]
     fn what_is_made_beside_the_numbers_is_counted() {
         let bytes = Samples::U8(vec![7; 100]);
-        // A hundred bytes, and as many floats.
+        // A hundred bytes, and a hundred floats.
         assert_eq!(tried(bytes.clone(), [0.5, 0.0], 499), Err(LoadErrorKind::Limit));
         assert_eq!(tried(bytes.clone(), [0.5, 0.0], 500), Ok(Samples::F32(vec![3.5; 100])));
         assert_eq!(tried(bytes, [1.0, 0.0], 0), Ok(Samples::U8(vec![7; 100])), "nothing is made");

@@ -1,7 +1,7 @@
-//! Bytes to typed voxels, block by block.
+//! Decoding of bytes into typed voxels, block by block.
 //!
-//! Only the voxels themselves and one block are in memory at a time. Allocation is fallible: a
-//! header that lies about its size gets an error, not an abort.
+//! Only the voxels themselves and one block are in memory at a time. Allocation is fallible: a header that lies about
+//! its size causes an error, not an abort.
 
 use std::io::{self, Read};
 
@@ -14,10 +14,10 @@ use crate::data::load::large_pages::expect_to_fill;
 use crate::data::{Samples, VoxelType};
 use crate::fault;
 
-/// Bytes that are read and decoded at a time, and between two looks at `cancel`.
+/// Bytes that are read and decoded at a time, between two checks for cancellation.
 pub(in crate::data::load) const BLOCK_BYTES: usize = 1 << 20;
 
-/// How voxels are stored.
+/// Size, number type and byte order of stored voxels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Layout {
     pub(crate) extent: Extent,
@@ -25,22 +25,22 @@ pub(crate) struct Layout {
     pub(crate) endian: Endian,
 }
 
-/// What can go wrong between a file and its voxels.
+/// Failure between a file and its voxels.
 #[derive(Debug)]
 pub(crate) enum Fault {
-    /// The data end after so many bytes (or numbers) of voxels.
+    /// The data end after `got` bytes (or numbers) of voxels.
     Short { got: u64 },
     /// There are more voxels than announced.
     Long,
-    /// The compressed stream is broken.
+    /// The compressed stream is corrupt.
     Corrupt(io::Error),
-    /// Some text is not a number of the voxel type.
+    /// Text where a number of the voxel type was expected.
     NotANumber { text: String },
-    /// The memory for the voxels is not there.
+    /// Allocation of the memory for the voxels failed.
     NoMemory,
-    /// The file could not be read.
+    /// The operating system could not read the file.
     Io(io::Error),
-    /// `cancel` was set.
+    /// Reading was cancelled, or stopped by another error that is passed on.
     Stopped(LoadError),
 }
 
@@ -51,7 +51,7 @@ impl From<LoadError> for Fault {
 }
 
 impl Fault {
-    /// The fault of what comes after so many bytes of voxels that were read.
+    /// Adds to `Short` the bytes of voxels that had been read before this part.
     pub(super) fn after(self, bytes: u64) -> Self {
         match self {
             Self::Short { got } => Self::Short { got: bytes + got },
@@ -59,7 +59,7 @@ impl Fault {
         }
     }
 
-    /// The fault, of which it is known that a decoder lies between the file and what was read.
+    /// Reclassifies an I/O error as `Corrupt` where a decoder reported it: for streams that were read through one.
     pub(in crate::data::load) fn of_stream(self) -> Self {
         match self {
             Self::Io(error) if is_corruption(&error) => Self::Corrupt(error),
@@ -67,7 +67,7 @@ impl Fault {
         }
     }
 
-    /// The error to report, with `help` for sizes that do not fit.
+    /// Converts to the error to report, with `help` for sizes that do not fit.
     pub(crate) fn into_error(
         self,
         attempt: Attempt<'_>,
@@ -119,11 +119,11 @@ impl Fault {
     }
 }
 
-/// One voxel's number type: how it is read.
+/// Number type of a voxel that can be decoded from bytes.
 pub(in crate::data::load) trait Sample: Pod + Send {
     fn from_bytes(bytes: &[u8], endian: Endian) -> Self;
 
-    /// The number whose bytes this one's are in a file.
+    /// Swaps the bytes of a number that was read in file order into machine order.
     fn reordered(self, endian: Endian) -> Self;
 }
 
@@ -131,7 +131,7 @@ macro_rules! sample {
     ($($type:ty),*) => { $(
         impl Sample for $type {
             fn from_bytes(bytes: &[u8], endian: Endian) -> Self {
-                // Blocks hold whole voxels: the chunk always has the right length.
+                // Blocks hold whole voxels, so that the chunk always has the right length.
                 let mut array = [0; size_of::<Self>()];
                 array.copy_from_slice(bytes);
                 match endian {
@@ -151,7 +151,7 @@ macro_rules! sample {
 }
 sample!(u8, i8, u16, i16, u32, i32, u64, i64, f32, f64);
 
-/// Reads all voxels with the generic reader below.
+/// Calls a generic reader with the voxel type, and wraps its vector in `Samples`.
 macro_rules! read_as {
     ($voxel_type:expr, $read:ident($($argument:expr),*)) => {
         match $voxel_type {
@@ -169,7 +169,7 @@ macro_rules! read_as {
 
 pub(super) use read_as;
 
-/// Reads binary voxels of a grid, all of them; what follows them is left alone.
+/// Reads all binary voxels of a grid; bytes after them are not touched.
 pub(crate) fn read_binary(
     reader: &mut impl Read,
     layout: &Layout,
@@ -178,7 +178,7 @@ pub(crate) fn read_binary(
     read_as!(layout.voxel_type, read_blocks(reader, layout, control))
 }
 
-/// Whether a decoder complains about the data (and not the disk about the file).
+/// Returns true if a decoder complains about the data (rather than the disk about the file).
 pub(in crate::data::load) fn is_corruption(error: &io::Error) -> bool {
     matches!(
         error.kind(),
@@ -186,10 +186,10 @@ pub(in crate::data::load) fn is_corruption(error: &io::Error) -> bool {
     )
 }
 
-/// Blocks that were read, for faults on purpose.
+/// Number of blocks read, for fault injection.
 static BLOCKS: fault::Count = fault::Count::new();
 
-/// Fills `block` as far as the reader goes; the number of bytes read.
+/// Fills `block` until it is full or the reader ends; returns the number of bytes read.
 pub(in crate::data::load) fn fill(
     reader: &mut impl Read,
     block: &mut [u8],
@@ -201,7 +201,7 @@ pub(in crate::data::load) fn fill(
         if fault::is_due(&BLOCKS, fault::Fault::ReadError) {
             return Err(Fault::Io(io::Error::other("a fault was asked for")));
         }
-        // Somebody may ask to stop meanwhile.
+        // In blocks, so that cancellation is noticed in between.
         let end = block.len().min(filled + BLOCK_BYTES);
         match reader.read(&mut block[filled..end]) {
             Ok(0) => break,
@@ -213,7 +213,7 @@ pub(in crate::data::load) fn fill(
     Ok(filled)
 }
 
-/// Reads and forgets up to `count` bytes; how many there were.
+/// Reads and discards up to `count` bytes; returns how many there were.
 pub(in crate::data::load) fn skip_bytes(
     reader: &mut impl Read,
     count: u64,
@@ -245,7 +245,7 @@ fn read_blocks<T: Sample>(
     Ok(values)
 }
 
-/// Reads as many voxels as there is room for; how many bytes they have in the file.
+/// Reads voxels until `block` is full; returns their number of bytes in the file.
 pub(super) fn read_block<T: Sample>(
     reader: &mut impl Read,
     block: &mut [T],
@@ -259,7 +259,7 @@ pub(super) fn read_block<T: Sample>(
     if got < wanted {
         return Err(Fault::Short { got: got as u64 });
     }
-    // In the order of the machine there is nothing to be done, which the compiler sees.
+    // In machine order this is the identity, which the compiler optimises away.
     match endian {
         Endian::Little => block.iter_mut().for_each(|value| *value = value.reordered(Endian::Little)),
         Endian::Big => block.iter_mut().for_each(|value| *value = value.reordered(Endian::Big)),
@@ -267,14 +267,15 @@ pub(super) fn read_block<T: Sample>(
     Ok(got as u64)
 }
 
-/// So many values of 0, or an error where the memory is not there. It is taken as it is written to.
+/// Allocates `count` zeros, or returns an error where memory is exhausted. Pages are committed as they are written
+/// to.
 pub(in crate::data::load) fn zeroed<T: Pod>(count: usize) -> Result<Vec<T>, Fault> {
     let mut values = bytemuck::allocation::try_zeroed_vec(count).map_err(|()| Fault::NoMemory)?;
     expect_to_fill(values.as_mut_ptr(), count);
     Ok(values)
 }
 
-/// An empty vector with room for `count` values, or an error where the memory is not there.
+/// Allocates an empty vector of capacity `count`, or returns an error where memory is exhausted.
 pub(in crate::data::load) fn reserve<T>(count: usize) -> Result<Vec<T>, Fault> {
     let mut values = Vec::new();
     match values.try_reserve_exact(count) {

@@ -1,4 +1,4 @@
-//! The bytes of the voxels that are kept, out of a stream with those of a whole grid.
+//! Filter that passes only the selected voxels of a stream with the voxels of a whole grid.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read};
@@ -7,10 +7,10 @@ use super::LoadControl;
 use super::samples::{BLOCK_BYTES, Fault, fill, reserve};
 use crate::data::attempt::Kept;
 
-/// Goes forward in a stream without reading what is passed over.
+/// Function that skips bytes of a stream without reading them.
 pub(in crate::data::load) type Leap<R> = fn(&mut R, u64) -> io::Result<()>;
 
-/// Goes forward in a file: what is not in the buffer is not read.
+/// Seeks forward in a file; bytes outside the buffer are not read.
 pub(in crate::data::load) fn leap_in_file(reader: &mut BufReader<File>, count: u64) -> io::Result<()> {
     let mut left = count;
     while left > 0 {
@@ -21,30 +21,30 @@ pub(in crate::data::load) fn leap_in_file(reader: &mut BufReader<File>, count: u
     Ok(())
 }
 
-/// Reads what is kept as if nothing else were there. At its end the stream is behind the last voxel of the grid.
+/// Reader that yields only the selected voxels. At its end the stream is positioned after the last voxel of the grid.
 pub(super) struct Sieve<'a, R> {
     reader: &'a mut R,
-    /// How it goes forward, where it need not read.
+    /// Function to skip bytes, where the stream can seek.
     leap: Option<Leap<R>>,
     control: &'a LoadControl,
     kept: Kept,
-    /// Bytes of a voxel.
+    /// Bytes per voxel in the stream.
     size: usize,
-    /// Bytes that are to be handed out, and how many of them were.
+    /// Bytes to hand out; the first `given` have been handed out already.
     ready: Vec<u8>,
     given: usize,
-    /// Where the next voxels of the stream are that are kept, along x, y and z.
+    /// Position of the next selected voxels of the grid, along x, y and z.
     next: [usize; 3],
-    /// Bytes of the stream before the next one.
+    /// Position in the stream, in bytes.
     at: u64,
-    /// Where bytes go that nobody wants.
+    /// Buffer for bytes that are discarded.
     scrap: Vec<u8>,
-    /// Why there are no more.
+    /// Error that ended the stream, since [`Read`] can only return [`io::Error`].
     pub(super) fault: Option<Fault>,
 }
 
 impl<'a, R: Read> Sieve<'a, R> {
-    /// A sieve for voxels of so many bytes.
+    /// Creates a filter for voxels of `size` bytes.
     pub(super) fn new(
         reader: &'a mut R,
         leap: Option<Leap<R>>,
@@ -56,12 +56,12 @@ impl<'a, R: Read> Sieve<'a, R> {
         Self { reader, leap, control, kept, size, ready, given: 0, next, at: 0, scrap, fault: None }
     }
 
-    /// Voxels of the stream before the next one.
+    /// Number of whole voxels of the stream before its position.
     pub(super) fn voxels_passed(&self) -> u64 {
         self.at / self.size as u64
     }
 
-    /// Goes to a byte of the stream; whether there are so many.
+    /// Moves to byte `at` of the stream; returns false if the stream ends before that.
     fn go_to(&mut self, at: u64) -> Result<bool, Fault> {
         let mut left = at.saturating_sub(self.at);
         if let Some(leap) = self.leap {
@@ -85,7 +85,7 @@ impl<'a, R: Read> Sieve<'a, R> {
         Ok(true)
     }
 
-    /// Reads the next voxels that are kept, as many as lie in a row and are read at a time; whether there are any.
+    /// Reads the next run of selected voxels in a row, at most a block; returns false if there are none.
     fn read_next(&mut self) -> Result<bool, Fault> {
         let Kept { grid: [nx, ny, nz], low, high, step, .. } = self.kept;
         let of_voxels = |voxels: u64| voxels.saturating_mul(self.size as u64);
@@ -102,7 +102,7 @@ impl<'a, R: Read> Sieve<'a, R> {
         if !self.go_to(of_voxels(place))? {
             return Ok(false);
         }
-        // Not what lies between the last voxel that is kept and the next piece.
+        // Up to the last selected voxel, without the gap before the next run.
         let wanted = ((voxels - 1) / step[0] * step[0] + 1) * self.size;
         if self.ready.capacity() < wanted {
             self.ready = reserve(wanted)?;
@@ -154,7 +154,7 @@ mod tests {
     use super::*;
     use crate::data::attempt::Portion;
 
-    /// A grid of 5 × 4 × 3 voxels of two bytes, the first of which says which it is, with something behind them.
+    /// Grid of 5 × 4 × 3 voxels of two bytes, the first of which is the voxel's index, followed by three other bytes.
     fn bytes() -> Vec<u8> {
         (0..60).flat_map(|voxel| [voxel, 100]).chain([7, 7, 7]).collect()
     }

@@ -1,8 +1,8 @@
-//! Voxels that lie in a file as they lie in memory, but for the order of their bytes: several threads read them, each the
-//! next block that nobody has taken.
+//! Multi-threaded reading of voxels that lie in a file as in memory, up to byte order; each thread takes the next
+//! free block.
 //!
-//! What takes time is not the file, which the system has read before, but memory that is used for the first time: the system
-//! clears each page of it. On two cores that takes half as long.
+//! The bottleneck is not the file, which the system usually has cached, but the first use of memory: the system
+//! clears each page. On two cores this halves the time.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -17,15 +17,16 @@ use super::voxels::{Meant, Voxels};
 use crate::data::attempt::Extent;
 use crate::data::{Samples, VoxelType};
 
-/// More threads than these do not copy faster: memory is the limit.
+/// Maximum number of threads: more do not copy faster, since memory bandwidth is the limit.
 const MOST_THREADS: usize = 4;
 
-/// Bytes that a thread takes at a time: far more than taking some costs, and so few that all threads end together.
+/// Bytes that a thread takes at a time: large against the cost of taking them, small enough for all threads to end
+/// together.
 const PART_BYTES: usize = 4 << 20;
 
 impl Stored {
-    /// Reads what is kept of a grid's voxels, which lie in a file from a byte on and are not compressed, as values. Where
-    /// reading the file goes on is not said.
+    /// Reads the selected voxels of an uncompressed grid, which begins at byte `at` of a file, as values. The file
+    /// position afterwards is unspecified.
     pub(in crate::data::load) fn read_of_file(
         &self,
         input: &mut Input,
@@ -44,7 +45,7 @@ impl Stored {
     }
 }
 
-/// Reads voxels that begin at a byte of a file; what follows them is left alone.
+/// Reads all voxels of a grid that begins at byte `at` of a file; bytes after them are not touched.
 fn read_file(file: &File, at: u64, layout: &Layout, control: &LoadControl) -> Result<Samples, Fault> {
     control.start(layout.extent.bytes);
     read_as!(layout.voxel_type, read_parts(file, at, layout, control))
@@ -57,7 +58,7 @@ fn read_parts<T: Sample>(
     control: &LoadControl,
 ) -> Result<Vec<T>, Fault> {
     let mut values = zeroed::<T>(layout.extent.voxels)?;
-    // In order, as disks like it; and before the first part that fails none is left out.
+    // In file order, for the disk's sake, and so that all parts before the first one that fails have been read.
     let parts = Mutex::new(values.chunks_mut(PART_BYTES / size_of::<T>()).enumerate());
     let failed: Mutex<Option<(usize, Fault)>> = Mutex::new(None);
     let work = || {
@@ -76,7 +77,7 @@ fn read_parts<T: Sample>(
             if failed.as_ref().is_none_or(|&(first, _)| number < first) {
                 *failed = Some((number, Fault::after(fault, done)));
             }
-            // Nobody takes another one.
+            // Drains the queue, so that no thread takes another part.
             parts.lock().unwrap_or_else(PoisonError::into_inner).by_ref().for_each(drop);
             return;
         }
@@ -93,7 +94,7 @@ fn read_parts<T: Sample>(
     }
 }
 
-/// A file from a byte on, whatever others read of it meanwhile.
+/// Reader of a file from an offset of its own, independent of the shared file position.
 struct Within<'a> {
     file: &'a File,
     at: u64,
@@ -123,7 +124,7 @@ mod tests {
 
     #[test]
     fn parts_of_a_file_come_to_their_places() {
-        // Some parts, the last of them not whole, behind three bytes.
+        // Several parts, the last of them partial, after an offset of three bytes.
         let count = 3 * PART_BYTES / 2 + 12_345;
         let words: Vec<u16> =
             (0..count as u32).map(|at| (at.wrapping_mul(2_654_435_761) >> 16) as u16).collect();
@@ -135,7 +136,7 @@ mod tests {
         let read = read_file(&file, 3, &of(count as u64), &control);
         assert!(read.unwrap() == Samples::U16(words), "voxels are at other places, or in another order");
         assert_eq!(control.fraction(), Some(1.0));
-        // One word more than there is: the bytes before it are counted, whoever has read them.
+        // One word more than there is: all bytes before it are counted, whichever thread has read them.
         let short = read_file(&file, 3, &of(count as u64 + 1), &control);
         assert!(matches!(short, Err(Fault::Short { got }) if got == 2 * count as u64));
         let early = read_file(&file, 3, &of(4 * count as u64), &control);

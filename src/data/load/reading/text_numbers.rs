@@ -1,36 +1,36 @@
-//! Numbers written as text, as the bytes that they would have: whoever reads voxels from bytes reads them from text too.
+//! Adapter that turns numbers written as text into bytes, so that readers of binary voxels read text too.
 
 use std::io::{self, BufRead, Cursor, Read};
 
 use super::number::Number;
 use crate::data::attempt::quoted;
 
-/// The longest number, in bytes. A full decimal f64 needs about 25.
+/// Maximum length of a number, in bytes. A full decimal f64 needs about 25.
 const LONGEST_NUMBER: usize = 400;
 
-/// Bytes that are made at a time.
+/// Bytes that are produced at a time.
 const BLOCK_BYTES: usize = 1 << 16;
 
-/// The bytes, little-endian, of numbers with white space between them.
+/// Reader that converts numbers separated by white space to little-endian bytes.
 ///
-/// What is no number, or does not fit its type, is an error of the kind `InvalidData`.
+/// Text that is not a number, or that does not fit the type, is an error of the kind `InvalidData`.
 pub(in crate::data::load) struct TextNumbers<R> {
     reader: R,
     number: Number,
-    /// Numbers that are still to be read: what comes after them may be something else.
+    /// Numbers still to be read: something else may follow them.
     left: u64,
-    /// Whether bytes are written as their shares of 255.
+    /// True if bytes are written as fractions from 0 to 1.
     are_shares: bool,
     ready: Cursor<Vec<u8>>,
 }
 
 impl<R: BufRead> TextNumbers<R> {
-    /// The next so many numbers.
+    /// Creates a reader of the next `count` numbers.
     pub(in crate::data::load) fn new(reader: R, number: Number, count: u64) -> Self {
         Self { reader, number, left: count, are_shares: false, ready: Cursor::default() }
     }
 
-    /// The next so many bytes, written as numbers from 0 to 1.
+    /// Creates a reader of the next `count` bytes, each written as a fraction from 0 to 1.
     pub(in crate::data::load) fn of_shares(reader: R, count: u64) -> Self {
         Self { are_shares: true, ..Self::new(reader, Number::U8, count) }
     }
@@ -43,7 +43,7 @@ impl<R: BufRead> TextNumbers<R> {
         while self.left > 0 && ready.len() < BLOCK_BYTES && next_word(&mut self.reader, &mut word)? {
             let text = String::from_utf8_lossy(&word);
             let is_number = if self.are_shares {
-                // What is no number becomes 0.
+                // The cast turns NaN into 0.
                 float(&text).map(|share| ready.push((share * 255.0).round() as u8)).is_some()
             } else {
                 add_bytes(self.number, &text, ready)
@@ -68,7 +68,7 @@ impl<R: BufRead> Read for TextNumbers<R> {
     }
 }
 
-/// Reads the next word, and the byte behind it; whether there is one.
+/// Reads the next word and the byte after it; returns false at the end.
 ///
 /// # Errors
 /// `InvalidData` where it is longer than any number.
@@ -102,16 +102,16 @@ pub(in crate::data::load) fn next_word(reader: &mut impl BufRead, word: &mut Vec
     }
 }
 
-/// Adds the bytes of a number; whether the text is one.
+/// Appends the bytes of a number; returns false if the text is not one.
 fn add_bytes(number: Number, text: &str, bytes: &mut Vec<u8>) -> bool {
     macro_rules! whole {
         ($type:ty) => {
-            // Some programs write whole numbers like 3.0 or 1e2.
+            // Some programs write integers as 3.0 or 1e2.
             text.parse::<$type>()
                 .ok()
                 .or_else(|| {
                     let value = text.parse::<f64>().ok()?;
-                    // Beyond 2⁵³ neighbours are no longer told apart.
+                    // Beyond 2⁵³ not every integer has a double of its own.
                     let is_exact = value.fract() == 0.0 && value.abs() <= 9007199254740992.0;
                     let within = value >= <$type>::MIN as f64 && value <= <$type>::MAX as f64;
                     (is_exact && within).then_some(value as $type)
@@ -129,7 +129,7 @@ fn add_bytes(number: Number, text: &str, bytes: &mut Vec<u8>) -> bool {
         Number::U64 => whole!(u64),
         Number::I64 => whole!(i64),
         Number::F16 => float(text).map(|value| bytes.extend(half::f16::from_f64(value).to_le_bytes())),
-        // Not over f64: rounded twice it would be another number.
+        // Directly, not through f64: rounding twice can give another number.
         Number::F32 => text
             .parse::<f32>()
             .ok()
@@ -140,7 +140,7 @@ fn add_bytes(number: Number, text: &str, bytes: &mut Vec<u8>) -> bool {
     .is_some()
 }
 
-/// A number, or what C libraries write for none: `-nan`, `nan(ind)`, `-nan(0x7fffff)`.
+/// Parses a number, or NaN as C libraries write it: `-nan`, `nan(ind)`, `-nan(0x7fffff)`.
 fn float(text: &str) -> Option<f64> {
     let is_nan = || {
         let text = text.trim_start_matches(['-', '+']);
@@ -150,7 +150,7 @@ fn float(text: &str) -> Option<f64> {
     text.parse().ok().or_else(|| is_nan().then_some(f64::NAN))
 }
 
-/// What messages call a type.
+/// Name of a number type in messages.
 fn name(number: Number) -> &'static str {
     match number {
         Number::U64 => "uint64",
@@ -166,7 +166,7 @@ mod tests {
 
     fn bytes(number: Number, text: &str, count: u64) -> io::Result<Vec<u8>> {
         let mut bytes = Vec::new();
-        // A small buffer, so that words are cut.
+        // A small buffer, so that words are split between blocks.
         let reader = io::BufReader::with_capacity(3, text.as_bytes());
         TextNumbers::new(reader, number, count).read_to_end(&mut bytes).map(|_count| bytes)
     }

@@ -1,20 +1,20 @@
-//! The voxels that were read of a grid: all, those that are kept, or the means of blocks, made slab by slab.
+//! Voxels that were read of a grid: all, a selection, or block averages, computed slab by slab.
 
 use super::samples::{BLOCK_BYTES, Fault};
 use super::{LoadControl, LoadError};
 use crate::data::attempt::Kept;
 use crate::data::{Blocks, Samples};
 
-/// Bytes of slices that are averaged at a time, at least: enough for all cores, little beside a volume. In tests two slices
-/// of the smallest volumes, so that there are several slabs.
+/// Bytes of slices that are averaged at a time, or one layer of blocks where that is more: enough for all cores,
+/// small against a volume. In tests two slices of the smallest volumes, so that there are several slabs.
 const SLAB_BYTES: usize = if cfg!(test) { 64 } else { 8 * BLOCK_BYTES };
 
-/// What was read of a grid.
+/// Voxels that were read of a grid.
 #[derive(Debug, PartialEq)]
 pub(in crate::data::load) struct Voxels {
-    /// What is kept of it.
+    /// Selected voxels, or block averages.
     pub(in crate::data::load) samples: Samples,
-    /// Where these are means, one voxel of each block: those of labels are labels.
+    /// First voxel of each block, where `samples` are averages: in a label map these are labels, unlike averages.
     pub(in crate::data::load) picked: Option<Samples>,
 }
 
@@ -25,39 +25,39 @@ impl From<Samples> for Voxels {
 }
 
 impl Voxels {
-    /// Numbers that stand in the file.
+    /// Numbers that occur in the file, which averages need not.
     pub(in crate::data::load) fn in_file(&self) -> &Samples {
         self.picked.as_ref().unwrap_or(&self.samples)
     }
 }
 
-/// How stored numbers become values.
+/// Conversion of stored numbers to values.
 pub(in crate::data::load) struct Meant<'a> {
-    /// The value that is left out of means, as the file declares it.
+    /// Padding value that is left out of averages, as the file declares it.
     pub(in crate::data::load) padding: Option<f64>,
-    /// Numbers to values, each for itself.
+    /// Function that converts numbers to values, one by one.
     pub(in crate::data::load) values: &'a dyn Fn(Samples) -> Result<Samples, LoadError>,
 }
 
 impl Meant<'_> {
-    /// Numbers are values.
+    /// Identity: the stored numbers are the values.
     pub(in crate::data::load) fn as_stored(padding: Option<f64>) -> Self {
         Self { padding, values: &Ok }
     }
 }
 
-/// Why means of blocks were not made.
+/// Reason why block averages could not be computed.
 pub(in crate::data::load) enum NoMeans<E> {
-    /// The slices could not be read.
+    /// Reading the slices has failed.
     Unread(E),
-    /// There is no memory for them.
+    /// Allocation of memory for the averages has failed.
     NoMemory,
 }
 
-/// The means of the blocks of a box.
+/// Averages the blocks of a box.
 ///
-/// `read` gives its slices, some at a time and in order: from the first to before the last, counted from that of the box.
-/// `meant` says what the values are, and what is left out.
+/// `read` supplies its slices in order, some at a time, as a half-open range that is counted from the first slice of
+/// the box. `meant` gives the conversion to values, and the padding that is left out.
 pub(in crate::data::load) fn averaged<E>(
     kept: &Kept,
     of_voxel: usize,
@@ -88,10 +88,10 @@ where
     Ok(Voxels { samples: means.samples, picked: picked.map(|picked| picked.samples) })
 }
 
-/// Values in the order in which they come, in a number type that holds all of them.
+/// Concatenated values, in a number type that holds all of them.
 struct Joined {
     samples: Samples,
-    /// How many there will be.
+    /// Number of values when complete.
     count: usize,
 }
 

@@ -1,4 +1,4 @@
-//! Giving up: whatever is being done to a volume, hardly anything of it is done afterwards.
+//! Tests of cancellation: whatever is being done to a volume stops almost immediately.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,10 +10,10 @@ use super::shared::gzip;
 use crate::data::load::{Choice, LoadControl, LoadError, LoadOptions, Portion, load};
 use crate::data::{Dataset, Volume};
 
-/// Voxels along an edge: 2 MiB of them.
+/// Voxels along an edge of the test volume, 2 MiB in all.
 const EDGE: usize = 128;
 
-/// Values between two looks at whether they are wanted.
+/// Number of values between two checks for cancellation.
 const PIECE: usize = 1 << 16;
 
 fn write(folder: &TempDir, edge: usize, is_packed: bool) -> PathBuf {
@@ -29,7 +29,7 @@ fn read(path: &Path, portion: Portion, control: &LoadControl) -> Result<Volume, 
     load(path, &LoadOptions { choice, ..LoadOptions::default() }, control)
 }
 
-/// All that is done to a volume before its first picture.
+/// Runs all processing of a volume before its first image.
 fn open(path: &Path, portion: Portion, control: &LoadControl) -> Result<Dataset, LoadError> {
     let volume = read(path, portion, control)?;
     let dataset = control.during(|| Dataset::new(volume));
@@ -43,7 +43,7 @@ fn every_stage_is_cut_into_small_pieces() {
     let control = LoadControl::new();
     let volume = read(&path, Portion::default(), &control).unwrap();
     let pieces = EDGE.pow(3) / PIECE;
-    // Range, values that matter, identity, and at most a MiB of what is read at a time.
+    // Value range, statistics and fingerprint, and blocks of at most 1 MiB for reading.
     let of_reading = control.begun();
     assert!(of_reading >= 3 * pieces as u64 + 2, "{of_reading}");
     control.during(|| volume.averaged([2; 3])).unwrap();
@@ -68,7 +68,7 @@ fn who_cancels_at_any_moment_waits_for_no_more_than_the_pieces_in_hand() {
         let control = LoadControl::new();
         open(&path, portion, &control).unwrap();
         let all = control.begun();
-        // The first and the last ones, and twenty between.
+        // The first moments, the last one, and nineteen in between.
         let moments =
             [1, 2, 3, all - 1].into_iter().chain((1..20).map(|at| at * all / 20).filter(|&at| at > 0));
         for moment in moments {
@@ -76,13 +76,14 @@ fn who_cancels_at_any_moment_waits_for_no_more_than_the_pieces_in_hand() {
             control.cancel_after(moment);
             let given_up = open(&path, portion, &control);
             assert!(matches!(given_up, Err(LoadError::Cancelled)), "{moment} of {all}");
-            // One piece for each core may have been begun at the same moment.
+            // Each core may have begun one piece at the same moment.
             let late = control.begun() - moment;
             assert!(late <= rayon::current_num_threads() as u64 + 1, "{late} pieces after {moment} of {all}");
         }
     }
 }
 
+/// Measures the longest delay of cancellation:
 /// `cargo nextest run --lib --run-ignored only -E 'test(how_long)' --no-capture`
 #[test]
 #[ignore = "it measures, and checks nothing"]

@@ -1,11 +1,11 @@
-//! Volumes that a file does not have: what is chosen must be there, in every format.
+//! Tests that choosing a volume that a file does not contain is an error in every format.
 
 use tempfile::TempDir;
 
 use super::shared::assert_refused;
 use super::*;
 
-/// Choices that a file of one volume cannot answer, and the option that is named.
+/// Choices that a file of a single volume does not offer, and the option that the error names.
 fn unanswerable() -> [(Choice, &'static str); 5] {
     let choice = Choice::default;
     [
@@ -59,7 +59,7 @@ fn what_a_file_does_not_have_cannot_be_chosen_in_any_format() {
         load_choice(&path, Choice::default()).unwrap();
         for (choice, option) in unanswerable() {
             assert_refused(load_choice(&path, choice.clone()), LoadErrorKind::BadInput, &[option]);
-            // Who can choose again gets the first.
+            // With a fallback allowed, the first volume is read.
             load_choice(&path, choice.or_first()).unwrap();
         }
         let first = Choice { channel: Some(0), frame: Some(0), ..Choice::default() };

@@ -1,4 +1,4 @@
-//! Portions of volumes: what is read of a file is what is left of all of it.
+//! Tests of partial reading: a portion read from a file equals the same portion of the whole volume.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -10,7 +10,7 @@ use crate::data::load::{
 };
 use crate::data::{Missing, Volume};
 
-/// Files of all formats that other programs have written, of 5 × 4 × 3 voxels and the like.
+/// Sample files of all formats, written by other programs, of about 5 × 4 × 3 voxels.
 fn samples() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/oracle/written");
     let mut found: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
@@ -20,12 +20,12 @@ fn samples() -> Vec<PathBuf> {
 
 fn read(path: &Path, portion: Portion) -> Result<Volume, LoadError> {
     let choice = Choice { portion: Some(portion), ..Choice::default().or_first() };
-    // Nothing here needs more.
+    // Enough for all samples.
     let options = LoadOptions { choice, memory_budget_bytes: 1 << 20, ..LoadOptions::default() };
     load(path, &options, &LoadControl::new())
 }
 
-/// A region without the first voxel of every axis that has another.
+/// Region without the first voxel of every axis that has several.
 fn inner(dims: [usize; 3]) -> Region {
     Region(dims.map(|n| Stretch { first: usize::from(n > 1), end: (n > 3).then_some(n - 1) }))
 }
@@ -67,7 +67,7 @@ fn what_is_read_of_every_format_is_what_is_left_of_all_of_it() {
         ] {
             let what = format!("{} {portion:?}", path.display());
             let wanted = Kept::of(&portion, dims, false).unwrap();
-            // Of a phantom's corner no voxel may be finite.
+            // The corner of a phantom may contain no finite voxel.
             let Ok(left) = whole.clone().portion(&Kept::all(dims), &wanted) else {
                 assert!(read(&path, portion).is_err(), "{what}");
                 continue;
@@ -81,7 +81,7 @@ fn what_is_read_of_every_format_is_what_is_left_of_all_of_it() {
             assert_eq!(part.held().choice().portion, Some(portion), "{what}");
         }
     }
-    // Whoever adds a format to the samples is told when it is not among those that were compared.
+    // Every format with samples must be among those that were compared.
     for format in
         ["nrrd", "nhdr", "mha", "mhd", "nii", "gz", "raw", "mrc", "npy", "npz", "pvm", "cube", "vti", "vtk"]
     {
@@ -108,7 +108,7 @@ fn labels_that_no_file_calls_labels_are_not_averaged() {
 
 #[test]
 fn a_file_larger_than_the_memory_is_read_in_part() {
-    // 512 KiB of voxels where there is room for two fifths.
+    // 512 KiB of voxels within a budget of two fifths of that.
     let n = 64usize;
     let bytes: Vec<u8> = (0..n * n * n).flat_map(|at| ((at * 7919) as u16).to_le_bytes()).collect();
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! What tests of readers share.
+//! Helper functions for the tests of readers.
 
 use std::fmt::Debug;
 use std::io::Write as _;
@@ -11,13 +11,13 @@ use tempfile::TempDir;
 use super::super::{Choice, LoadControl, LoadError, LoadErrorKind, LoadOptions, load};
 use crate::data::Volume;
 
-/// Loads a file of at most 1 MiB of voxels.
+/// Loads a file with a budget of 1 MiB of voxels.
 pub(in crate::data::load) fn load_path(path: &Path, choice: Choice) -> Result<Volume, LoadError> {
     let options = LoadOptions { choice, memory_budget_bytes: 1 << 20, ..LoadOptions::default() };
     load(path, &options, &LoadControl::new())
 }
 
-/// Loads a file of a name that lies alone in its folder.
+/// Loads bytes from a file of this name, alone in its folder.
 pub(in crate::data::load) fn load_bytes(
     name: &str,
     bytes: &[u8],

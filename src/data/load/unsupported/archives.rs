@@ -1,4 +1,4 @@
-//! Archives, and files that are packed in a way that is not unpacked here.
+//! Unsupported archives and compression formats.
 
 use super::UnsupportedFormat;
 use super::mark::Mark;
@@ -55,7 +55,7 @@ pub(super) const FORMATS: &[UnsupportedFormat] = &[
     },
     UnsupportedFormat {
         what: "packed with bzip2",
-        // The magic of the first block: the digits of pi.
+        // Magic of the first block: the digits of pi.
         marks: &[Mark::Test(|look| look.has(0, b"BZh") && look.has(4, b"\x31\x41\x59\x26\x53\x59"))],
         endings: &[],
         help: "unpack it: bunzip2 -k IN.bz2",

@@ -1,4 +1,4 @@
-//! Formats that are compound files of OLE 2: what they are is told by the names in them.
+//! Unsupported formats based on OLE 2 compound files, recognised by the names of their streams.
 
 use super::UnsupportedFormat;
 use super::mark::Mark;

@@ -1,9 +1,9 @@
-//! Files that hold no volume at all: documents, films, pages, and what stands in place of data that were not fetched.
+//! Files that contain no volume: documents, films, web pages, and placeholders of data that were not fetched.
 
 use super::UnsupportedFormat;
 use super::mark::Mark;
 
-/// Makes slices of a film.
+/// Command that extracts the frames of a film.
 const FRAMES: &str = "make slices of its pictures: ffmpeg -i IN slices/%04d.png, and open their folder";
 
 pub(super) const FORMATS: &[UnsupportedFormat] = &[

@@ -1,4 +1,4 @@
-//! Formats of simulations, film and the earth.
+//! Unsupported formats of simulations, visual effects and geoscience.
 
 use super::UnsupportedFormat;
 use super::mark::Mark;
@@ -37,7 +37,7 @@ pub(super) const FORMATS: &[UnsupportedFormat] = &[
     },
     UnsupportedFormat {
         what: "a SEG-Y file of seismics",
-        // The first card of the text, in EBCDIC or ASCII.
+        // First card image of the textual header in EBCDIC: "C 1 " or "C01 ".
         marks: &[Mark::Bytes(0, b"\xc3\x40\xf1\x40"), Mark::Bytes(0, b"\xc3\xf0\xf1\x40")],
         endings: &[".sgy", ".segy"],
         help: "save it as an array: python -c \"import segyio, numpy; numpy.save('OUT.npy', segyio.tools.cube('IN.sgy'))\"",

@@ -1,10 +1,10 @@
-//! Folders that are a format of their own.
+//! Folders that are an unsupported format of their own.
 
 use std::path::Path;
 
 use super::UnsupportedFormat;
 
-/// Folders, and files in them that only such a folder has.
+/// Folder formats, each with files that only such a folder has.
 const FOLDERS: &[(&[&str], UnsupportedFormat)] = &[
     (
         &[".zattrs", ".zgroup", ".zarray", ".zmetadata", "zarr.json"],
@@ -36,7 +36,7 @@ const FOLDERS: &[(&[&str], UnsupportedFormat)] = &[
     ),
 ];
 
-/// The format that a folder is, where it is one by itself.
+/// Recognises an unsupported format of a folder.
 pub(crate) fn of_folder(path: &Path) -> Option<&'static UnsupportedFormat> {
     let is_marked = |names: &[&str]| names.iter().any(|name| path.join(name).is_file());
     FOLDERS.iter().find(|(names, _)| is_marked(names)).map(|(_, format)| format)

@@ -1,4 +1,4 @@
-//! HDF5 and what is stored in it, and the formats of arrays that came before or beside it.
+//! HDF5 and the formats based on it, and older or similar array formats.
 //!
 //! After the HDF5 file format specification 3.0, section II.A: the signature is at byte 0, 512, 1024 and so on.
 
@@ -7,14 +7,14 @@ use super::mark::{Look, Mark};
 
 const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
 
-/// Whether a file is HDF5; behind a block of somebody's own, which is mostly 512 bytes long.
+/// Returns true if a file is HDF5, possibly after a user block, which mostly has 512 bytes.
 fn is_hdf5(look: &Look) -> bool {
     let places = [0, 512, 1024, 2048, 4096].into_iter();
     look.has(0, SIGNATURE)
         || places.filter_map(|at| look.stored.get(at..)).any(|rest| rest.starts_with(SIGNATURE))
 }
 
-/// Whether it is one and holds a name, or is called so.
+/// Returns true if a file is HDF5 and contains one of the names, or has one of the extensions.
 fn holding(look: &Look, names: &[&[u8]], endings: &[&str]) -> bool {
     is_hdf5(look)
         && (names.iter().any(|name| look.holds(name))

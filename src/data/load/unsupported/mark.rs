@@ -1,4 +1,4 @@
-//! What files of a format have in common.
+//! Signatures by which unsupported formats are recognised.
 
 use std::io::{Read as _, Seek as _};
 use std::path::Path;
@@ -7,46 +7,46 @@ use super::super::reading::input::Input;
 use super::super::reading::reader::Start;
 use super::ole2;
 
-/// Something by which a format is told.
+/// Signature of a format.
 #[derive(Debug)]
 pub(super) enum Mark {
-    /// Bytes at a place of what the file holds, unpacked where it is a gzip file.
+    /// Bytes at an offset of the content, inflated where the file is a gzip file.
     Bytes(usize, &'static [u8]),
-    /// Bytes at a place, in a file whose name has one of these endings: for bytes that others may have as well.
+    /// Bytes at an offset, in a file with one of these extensions: for bytes that are not specific enough.
     Named(usize, &'static [u8], &'static [&'static str]),
-    /// Bytes at a place, and others anywhere near the beginning: what a container holds.
+    /// Bytes at an offset, and others anywhere near the beginning: for containers and their content.
     Holding(usize, &'static [u8], &'static [u8]),
-    /// Text that begins with some words (behind spaces and a byte order mark), in any case.
+    /// Text that begins with some words, after white space and a byte order mark, ignoring case.
     Words(&'static str),
-    /// Text that begins with one of them and has the other near its beginning.
+    /// Text that begins with the first words and has the second near its beginning.
     WordsWith(&'static str, &'static str),
-    /// A compound file of OLE 2 with a stream or storage of a name.
+    /// OLE 2 compound file with a stream or storage of this name.
     Compound(&'static str),
-    /// A test of its own.
+    /// Function that tests the beginning of the file.
     Test(fn(&Look) -> bool),
 }
 
-/// How a file begins.
+/// Beginning of a file, prepared for signature tests.
 pub(super) struct Look {
-    /// Its name in lower case.
+    /// File name in lower case.
     pub(super) name: String,
-    /// What it holds, unpacked where it is a gzip file: the first kilobyte.
+    /// First kilobyte of the content, inflated where the file is a gzip file.
     pub(super) content: Vec<u8>,
-    /// The file itself: as much as is looked at.
+    /// First bytes of the file as stored.
     pub(super) stored: Vec<u8>,
-    /// Length of the file in bytes.
+    /// Length of the file, in bytes.
     pub(super) length: u64,
-    /// Whether it is a gzip file.
+    /// True if it is a gzip file.
     pub(super) is_gzip: bool,
-    /// Names in a compound file of OLE 2.
+    /// Names of streams and storages in an OLE 2 compound file.
     pub(super) compound: Vec<String>,
 }
 
 impl Look {
-    /// Looks at so many bytes of a file, and goes back to its beginning.
+    /// Reads the first `bytes` bytes of a file, and seeks back to its beginning.
     pub(super) fn new(path: &Path, start: &Start, input: &mut Input, bytes: u64) -> Self {
         let mut stored = Vec::new();
-        // What cannot be read says nothing.
+        // A file that cannot be read matches no signature.
         let _read = input.reader.by_ref().take(bytes).read_to_end(&mut stored);
         let compound = ole2::names(&stored, input);
         let _back = input.reader.rewind();
@@ -60,18 +60,18 @@ impl Look {
         }
     }
 
-    /// Whether what the file holds has some bytes at a place.
+    /// Returns true if the content has `bytes` at offset `at`.
     pub(super) fn has(&self, at: usize, bytes: &[u8]) -> bool {
         self.content.get(at..).is_some_and(|rest| rest.starts_with(bytes))
     }
 
-    /// Whether the file has some bytes anywhere in what is looked at.
+    /// Returns true if the inspected part contains `bytes` anywhere.
     pub(super) fn holds(&self, bytes: &[u8]) -> bool {
         let held = if self.is_gzip { &self.content } else { &self.stored };
         held.windows(bytes.len()).any(|window| window == bytes)
     }
 
-    /// The beginning as text in lower case.
+    /// First kilobyte of the content as text, in lower case.
     pub(super) fn text(&self) -> String {
         let text = String::from_utf8_lossy(&self.content).to_lowercase();
         text.trim_start_matches('\u{feff}').trim_start().to_owned()
@@ -79,7 +79,7 @@ impl Look {
 }
 
 impl Mark {
-    /// Whether a file has it.
+    /// Returns true if a file matches the signature.
     pub(super) fn is_found(&self, look: &Look) -> bool {
         match *self {
             Self::Bytes(at, bytes) => look.has(at, bytes),

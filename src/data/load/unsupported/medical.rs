@@ -1,4 +1,4 @@
-//! Formats of scanners and of brain research.
+//! Unsupported formats of medical scanners and brain research.
 
 use super::UnsupportedFormat;
 use super::mark::Mark;

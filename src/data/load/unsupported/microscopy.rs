@@ -1,4 +1,4 @@
-//! Formats of microscopes.
+//! Unsupported formats of microscopes and their software.
 
 use super::UnsupportedFormat;
 use super::mark::Mark;
@@ -12,7 +12,7 @@ pub(super) const FORMATS: &[UnsupportedFormat] = &[
     },
     UnsupportedFormat {
         what: "a LIF file of Leica microscopes",
-        // A block of XML: its mark, its length, a star, the number of letters, UTF-16.
+        // A block of XML: its magic, its length, an asterisk, the number of characters, UTF-16.
         marks: &[Mark::Test(|look| {
             look.has(0, b"\x70\0\0\0") && look.has(8, b"\x2a") && look.has(13, b"<\0")
         })],
@@ -34,14 +34,14 @@ pub(super) const FORMATS: &[UnsupportedFormat] = &[
     },
     UnsupportedFormat {
         what: "a VSI file of Olympus microscopes",
-        // The file itself is TIFF without its pictures, which lie in a folder beside it.
+        // The file itself is TIFF without the images, which lie in a folder beside it.
         marks: &[],
         endings: &[".vsi", ".ets"],
         help: "convert it with Bio-Formats: bfconvert IN.vsi OUT.ome.tif, or open it in Fiji and save it as TIFF",
     },
     UnsupportedFormat {
         what: "a Digital Micrograph file of Gatan",
-        // Version, length, byte order, and that a group of tags begins.
+        // Only the version number, which is not specific enough without the extension.
         marks: &[Mark::Named(0, b"\0\0\0\x03", &[".dm3"]), Mark::Named(0, b"\0\0\0\x04", &[".dm4"])],
         endings: &[".dm3", ".dm4"],
         help: "convert it with IMOD: dm2mrc IN.dm4 OUT.mrc, or open it in Fiji and save it as TIFF",

@@ -1,23 +1,23 @@
-//! Surfaces, which are no volumes.
+//! Surface meshes, which are not volumes.
 
 use std::path::Path;
 
 use super::UnsupportedFormat;
 use super::mark::{Look, Mark};
 
-/// Makes voxels of a surface.
+/// Command that voxelises a surface.
 const HELP: &str = "open the volume that it was made from, or fill it with voxels: python -c \"import trimesh, numpy; \
                     m = trimesh.load('IN', force='mesh'); \
                     numpy.save('OUT.npy', m.voxelized(m.scale / 256).fill().matrix.astype('u1'))\"";
 
-/// A binary STL file has a header of 80 bytes, the number of triangles, and 50 bytes for each.
+/// Returns true for a binary STL file: a header of 80 bytes, the number of triangles, and 50 bytes for each.
 fn is_binary_stl(look: &Look) -> bool {
     let count = look.stored.get(80..84).and_then(|bytes| bytes.try_into().ok()).map(u32::from_le_bytes);
     let is_called_so = Path::new(&look.name).extension().is_some_and(|ending| ending == "stl");
     is_called_so && count.is_some_and(|count| 84 + 50 * u64::from(count) == look.length)
 }
 
-/// Lines of Wavefront's text: vertices before anything else but comments, names and materials.
+/// Returns true for Wavefront OBJ text: vertices come first, except for comments, names and materials.
 fn is_obj(look: &Look) -> bool {
     let text = look.text();
     let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());

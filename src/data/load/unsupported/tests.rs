@@ -1,4 +1,5 @@
-//! Every format that is named: by its bytes, whatever the file is called, with a command that helps.
+//! Tests that every known but unsupported format is recognised by its bytes, whatever its name, and refused with a
+//! helpful command.
 
 use std::path::Path;
 
@@ -6,21 +7,21 @@ use super::super::tests::shared::{assert_refused, gzip, load_bytes, load_path};
 use super::super::{Choice, LoadControl, LoadErrorKind, LoadOptions, RawFormat, load};
 use crate::data::VoxelType;
 
-/// Bytes behind a beginning, as files of a format have them.
+/// Pads the beginning of a file with bytes.
 fn file(start: &[u8]) -> Vec<u8> {
     let mut bytes = start.to_vec();
     bytes.resize(start.len().max(2048), 7);
     bytes
 }
 
-/// A start with others at a place behind it.
+/// Builds a file with these first bytes, and others at an offset.
 fn with(start: &[u8], at: usize, bytes: &[u8]) -> Vec<u8> {
     let mut made = file(start);
     made[at..at + bytes.len()].copy_from_slice(bytes);
     made
 }
 
-/// A compound file of OLE 2 whose directory, in the second sector, has these names.
+/// Builds an OLE 2 compound file whose directory, in the second sector, has these names.
 fn compound(names: &[&str]) -> Vec<u8> {
     let mut bytes = with(b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", 30, &9u16.to_le_bytes());
     bytes[48..52].copy_from_slice(&1u32.to_le_bytes());
@@ -33,7 +34,7 @@ fn compound(names: &[&str]) -> Vec<u8> {
     bytes
 }
 
-/// A file of a format, and words of what is said of it.
+/// Sample file of a format, and words of the error message.
 struct Example {
     name: &'static str,
     bytes: Vec<u8>,
@@ -44,7 +45,7 @@ fn example(name: &'static str, bytes: Vec<u8>, words: &'static [&'static str]) -
     Example { name, bytes, words }
 }
 
-/// One of each format that bytes tell.
+/// One sample of each format that is recognised by content.
 fn files() -> Vec<Example> {
     const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
     const ZIP: &[u8] = b"PK\x03\x04";
@@ -127,7 +128,7 @@ fn files() -> Vec<Example> {
         example("bzip2", file(b"BZh9\x31\x41\x59\x26\x53\x59"), &["bunzip2"]),
         example("LZ4", file(b"\x04\x22\x4d\x18"), &["lz4 -d"]),
         example("gzip twice", gzip(&gzip(&[7; 100])), &["twice", "gunzip"]),
-        // Their length tells, with the name.
+        // Recognised by name, with length or content.
         example("part.stl", stl, &["surface (STL)", "trimesh"]),
         example("scan.vsi", b"II*\0\x08\0\0\0\0\0\0\0\0\0".to_vec(), &["VSI", "bfconvert"]),
         example("scan.Z", file(b"\x1f\x9d\x90"), &["compress", "uncompress"]),
@@ -139,7 +140,7 @@ fn formats_are_named_by_their_bytes_with_a_command_that_helps() {
     for Example { name, bytes, words } in files() {
         let names = match name {
             named if named.contains('.') && !named.contains(' ') => vec![named],
-            // Whatever it is called: nothing, nonsense, or what is read.
+            // Whatever the extension: none, an unknown one, or that of a supported format.
             _ => vec!["it", "it.xyz", "it.raw", "it.nrrd"],
         };
         for called in names {
@@ -212,7 +213,7 @@ fn folders_are_named_too() {
 fn bare_voxels_that_begin_like_another_format_are_read_where_they_are_described() {
     let folder = tempfile::tempdir().unwrap();
     for Example { name, bytes, .. } in files() {
-        // Not those that are no voxels as they are: gzip is unpacked.
+        // Except those that RAW would not read as stored: gzip is inflated.
         if name == "gzip twice" || name == "scan.vsi" {
             continue;
         }

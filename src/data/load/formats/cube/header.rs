@@ -1,4 +1,4 @@
-//! What comes before the numbers of a cube: two lines of words, the grid, the atoms, and which orbitals there are.
+//! Header of a Gaussian cube: two title lines, the grid, the atoms, and the list of orbitals.
 
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -9,23 +9,23 @@ use super::bad_line;
 use super::words::Words;
 use crate::data::attempt::Attempt;
 
-/// The radius of hydrogen's orbit in millimetres (CODATA 2018).
+/// Bohr radius in millimetres (CODATA 2018).
 const MM_PER_BOHR: f64 = 5.291_772_109_03e-8;
 
 const MM_PER_ANGSTROM: f64 = 1e-7;
 
-/// Most atoms that are skipped: as many as the largest structures of viruses have.
+/// Maximum number of atoms, which are skipped: that of the largest virus structures.
 const MOST_ATOMS: u64 = 10_000_000;
 
-/// Most orbitals of a file.
+/// Maximum number of orbitals of a file.
 const MOST_VALUES: u64 = 4096;
 
 pub(super) struct Header {
     pub(super) title: String,
-    /// Voxels along x, y, z.
+    /// Voxels along x, y and z.
     pub(super) dims: [u64; 3],
     pub(super) placement: Placement,
-    /// What the values of each voxel are called.
+    /// Name of each value of a voxel.
     pub(super) values: Vec<String>,
     atoms: u64,
     has_orbitals: bool,
@@ -71,7 +71,7 @@ impl Header {
             Some(&n) if n > 1.0 && n <= MOST_VALUES as f64 => vec![String::new(); n as usize],
             _ => vec![String::new()],
         };
-        // Numbers of voxels below zero say that lengths are in Å.
+        // Negative numbers of voxels mean that lengths are in Å.
         let unit = if counts[0] < 0 { MM_PER_ANGSTROM } else { MM_PER_BOHR };
         let [a, b, c] = axes.map(|axis| axis * unit);
         let translation = DVec3::new(*x, *y, *z) * unit;
@@ -81,7 +81,7 @@ impl Header {
         Ok(Self { title, dims, placement, values, atoms, has_orbitals })
     }
 
-    /// Goes past a header that was read before.
+    /// Skips a header that was parsed before.
     pub(super) fn skip(&self, attempt: Attempt<'_>, words: &mut Words<'_>) -> Result<(), LoadError> {
         skip_lines(attempt, words, 6 + self.atoms)?;
         if self.has_orbitals {
@@ -91,7 +91,7 @@ impl Header {
     }
 }
 
-/// How many orbitals there are, and the number of each.
+/// Reads the list of orbitals: their number, and the identifier of each.
 fn orbitals(attempt: Attempt<'_>, words: &mut Words<'_>) -> Result<Vec<String>, LoadError> {
     let mut word = String::new();
     let mut next = || -> Result<String, LoadError> {

@@ -26,7 +26,7 @@ pub(super) const READER: Reader = Reader {
 
 const HELP: &str = "check the header against the data, or copy the file again";
 
-/// Loads a cube.
+/// Loads a Gaussian cube file.
 fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
     let attempt = Attempt { what: "read the Gaussian cube", path: source.path };
     let header = {
@@ -34,14 +34,15 @@ fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
         Header::read(attempt, &mut Words::new(source.content(), control))?
     };
     let voxel_type = VoxelType::F32;
-    // Its slices are none of the volume's: x is slowest. All of it is read before anything is left out.
+    // x is slowest in the file, so that its slices are not those of the volume: all of it is read before a selection
+    // is made.
     let room = source.options.room(source.control);
     let extent = Extent::checked_whole(attempt, "numbers of voxels", header.dims, voxel_type, room)?;
     let layout = Layout { extent, voxel_type, endian: Endian::Little };
     let values = header.values.len();
     let chosen = source
         .numbered(attempt, Dimension::Channel, values as u64, header.dims, |at| header.values[at].clone())?;
-    // A digit each and a space between: less cannot hold the numbers, and nothing is allocated.
+    // At least a digit and a space each: shorter data are refused before memory is allocated.
     let needed = (extent.voxels as u64).saturating_mul(values as u64);
     let room = source.input.len.div_ceil(2);
     if !source.start.is_gzip() && room < needed {
@@ -54,7 +55,7 @@ fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
     let name = stem(source.path);
     let control = source.control;
     control.start(extent.bytes);
-    // Once more from the beginning: what the first look has read ahead is lost.
+    // From the beginning again, because the first reader has buffered data.
     source.input.seek(0).map_err(|error| attempt.io(error))?;
     let mut words = Words::new(source.content(), control);
     header.skip(attempt, &mut words)?;
@@ -74,7 +75,7 @@ fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
     Parts { name, extent, placement: header.placement, voxels: samples.into(), hints }.volume(attempt)
 }
 
-/// Reads one value of each voxel: x is slowest in the file, and fastest in memory.
+/// Reads one value of each voxel, transposing the grid: x is slowest in the file, and fastest in memory.
 fn read(words: &mut Words<'_>, extent: Extent, values: usize, chosen: usize) -> Result<Samples, Fault> {
     let [nx, ny, nz] = extent.dims;
     let mut samples = reserve(extent.voxels)?;
@@ -101,7 +102,7 @@ fn read(words: &mut Words<'_>, extent: Extent, values: usize, chosen: usize) -> 
     Ok(Samples::F32(samples))
 }
 
-/// A line of numbers that is not what it should be.
+/// Error for a header line with unexpected content.
 fn bad_line(attempt: Attempt<'_>, field: &str, line: &str, expected: &str) -> LoadError {
     attempt.bad_input(
         field,

@@ -1,4 +1,4 @@
-//! Cubes made by hand: densities and orbitals, straight and oblique, and headers that lie.
+//! Tests of Gaussian cubes: densities and orbitals, orthogonal and oblique, and headers with false sizes.
 
 use std::io::Write as _;
 

@@ -1,14 +1,14 @@
-//! Lines and words of a long text, block by block.
+//! Reader of lines and words of a long text, block by block.
 
 use std::io::Read;
 
 use super::super::LoadControl;
 use super::super::samples::{BLOCK_BYTES, Fault, fill};
 
-/// The longest line of a header, in bytes.
+/// Maximum length of a header line, in bytes.
 const LONGEST_LINE: usize = 4096;
 
-/// The longest word, in bytes: a full decimal f64 needs about 25.
+/// Maximum length of a word, in bytes: a full decimal f64 needs about 25.
 const LONGEST_WORD: usize = 400;
 
 pub(super) struct Words<'a> {
@@ -23,7 +23,7 @@ impl<'a> Words<'a> {
         Self { reader, control, block: Vec::new(), at: 0 }
     }
 
-    /// Says how many bytes of voxels there are now.
+    /// Reports progress: `bytes` more bytes of voxels have been decoded.
     pub(super) fn advance(&self, bytes: u64) {
         self.control.advance(bytes);
     }
@@ -40,7 +40,7 @@ impl<'a> Words<'a> {
         Ok(byte)
     }
 
-    /// The next line without its end; nothing at the end of the text.
+    /// Reads the next line without its newline; `None` at the end of the text.
     pub(super) fn line(&mut self) -> Result<Option<String>, Fault> {
         let mut line = Vec::new();
         loop {
@@ -56,7 +56,7 @@ impl<'a> Words<'a> {
         Ok(Some(String::from_utf8_lossy(&line).into_owned()))
     }
 
-    /// Puts the next word in the place of another; false at the end of the text.
+    /// Replaces `word` by the next word; returns false at the end of the text.
     pub(super) fn word(&mut self, word: &mut String) -> Result<bool, Fault> {
         word.clear();
         loop {
@@ -73,7 +73,7 @@ impl<'a> Words<'a> {
     }
 }
 
-/// A number as Fortran writes it: with D for E, or without the E before an exponent of three digits.
+/// Parses a number in Fortran notation: D for E, or an exponent of three digits without the E.
 pub(super) fn real(word: &str) -> Option<f32> {
     word.parse().ok().or_else(|| {
         let with_e = word.replace(['D', 'd'], "E");

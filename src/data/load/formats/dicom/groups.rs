@@ -1,4 +1,4 @@
-//! Which pictures belong together: those of one series that are of one size and lie in parallel.
+//! Grouping of images into volumes: those of one series with equal size and parallel planes.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,49 +16,50 @@ use super::pixels::shape::{Colors, Shape};
 use crate::data::attempt::Attempt;
 use crate::data::plain;
 
-/// Pictures whose places differ by less in every cosine lie in parallel.
+/// Tolerance of direction cosines within which planes count as parallel.
 const PARALLEL: f64 = 1e-3;
 
-/// Distances between pixels that differ by less, as a share, are the same.
+/// Relative tolerance within which pixel spacings count as equal.
 const SAME_SPACING: f64 = 1e-3;
 
-/// Groups of a series that a picture is compared with: a scan has three directions, a look around a joint has dozens.
+/// Maximum number of groups of a series that an image is compared with: a scan has three directions, a radial scan of
+/// a joint has dozens.
 const MOST_COMPARED: usize = 64;
 
-/// Pictures that make a volume, or one for each phase.
+/// Images that form a volume, or one volume per phase.
 #[derive(Debug)]
 pub(super) struct Group {
     pub(super) shape: Shape,
     pub(super) slices: Vec<Slice>,
-    /// What stands where slices are missing.
+    /// Rule for filling missing slices.
     pub(super) filling: Filling,
-    /// They are masks of segments.
+    /// True if the images are masks of segments.
     pub(super) has_masks: bool,
 }
 
-/// A file whose pixels cannot be read.
+/// File whose pixels cannot be read, and the reason.
 #[derive(Debug)]
 pub(super) struct UnreadableFile {
-    /// Its number among the headers.
+    /// Index of the file among the headers.
     pub(super) file: usize,
     pub(super) why: LoadError,
 }
 
-/// The pictures of many files.
+/// All groups of images among the files, and the files left out.
 #[derive(Debug, Default)]
 pub(super) struct Grouping {
-    /// The series by their numbers.
+    /// Groups in ascending order of their series numbers.
     pub(super) groups: Vec<Group>,
-    /// All image types, by which [`Attribute::ImageType`] counts them.
+    /// Distinct image types; [`Attribute::ImageType`] holds indices into this list.
     pub(super) image_types: Vec<String>,
     pub(super) unreadable: Vec<UnreadableFile>,
 }
 
-/// Puts the pictures of all files together.
+/// Groups the images of all files into volumes.
 pub(super) fn groups(headers: &[Header]) -> Grouping {
     let image_types: BTreeSet<&str> = headers.iter().flat_map(image_types_of).collect();
     let image_types: Vec<String> = image_types.into_iter().map(str::to_owned).collect();
-    // A file of many frames is a volume by itself.
+    // A file of several frames is a group of its own.
     let own = |file: usize| (headers[file].frame_count() > 1).then_some(file);
     let mut of_series: BTreeMap<(i64, &str, Option<usize>, Shape), Vec<Group>> = BTreeMap::new();
     let mut unreadable = Vec::new();
@@ -91,7 +92,7 @@ pub(super) fn groups(headers: &[Header]) -> Grouping {
     Grouping { groups: of_series.into_values().flatten().collect(), image_types, unreadable }
 }
 
-/// The frames of a file.
+/// Returns the frames of a file as slices.
 fn frames<'a>(
     file: usize,
     header: &'a Header,
@@ -107,13 +108,13 @@ fn frames<'a>(
     })
 }
 
-/// The image types of a file's frames.
+/// Returns the image types of a file and its frames.
 fn image_types_of(header: &Header) -> impl Iterator<Item = &str> {
     let of_frames = header.found.frame_types.iter().map(String::as_str);
     of_frames.chain([header.found.image_type.as_str()])
 }
 
-/// How the pixels of a file are stored, if they are read and the file has room for them.
+/// Returns the pixel layout of a file, if it is supported and the file is long enough for its frames.
 pub(super) fn shape_of(header: &Header) -> Result<Shape, LoadError> {
     let attempt = Attempt { what: super::WHAT, path: &header.path };
     let shape = Shape::of(attempt, header)?;
@@ -122,7 +123,7 @@ pub(super) fn shape_of(header: &Header) -> Result<Shape, LoadError> {
     Ok(shape)
 }
 
-/// Says how many pictures of how many are left out, and why the first of them.
+/// Formats a remark: how many of `total` items are left out, and why the first of them.
 pub(super) fn left_out(count: usize, total: usize, what: &str, why: &LoadError) -> String {
     let are = if count == 1 { "is" } else { "are" };
     format!("{count} of {total} {what} {are} left out: {}", plain(&why.to_string(), 400))
@@ -152,7 +153,7 @@ impl Group {
         let is_fraction = found.segmentation == Some(SegmentationType::Fractional);
         let has_frames_by_segment =
             matches!(found.segmentation, Some(SegmentationType::Binary | SegmentationType::Fractional));
-        // Shares of one segment are a field by themselves.
+        // Fractions of a single segment are a scalar field, not a mask.
         let has_masks = has_frames_by_segment && !(is_fraction && found.segments.len() == 1);
         let filling = match (found.segmentation, shape.colors) {
             (Some(_), _) => Filling::NoSegment,
@@ -162,7 +163,7 @@ impl Group {
         Self { shape, slices: vec![*first], filling, has_masks }
     }
 
-    /// What users are told that it is.
+    /// Returns the group's name for the user: modality, description and direction.
     pub(super) fn name(&self, headers: &[Header]) -> String {
         let Some(first) = self.slices.first() else { return String::new() };
         let found = &headers[first.file].found;
@@ -172,7 +173,7 @@ impl Group {
     }
 }
 
-/// Across which way pictures lie, in the words of radiology.
+/// Returns the anatomical direction of a plane, in the terms of radiology.
 fn direction(plane: &Plane) -> &'static str {
     let Some(normal) = plane.normal() else { return "" };
     let steep = |axis: DVec3| normal.dot(axis).abs() > 0.8;

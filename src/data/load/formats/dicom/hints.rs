@@ -1,4 +1,4 @@
-//! What a header says of the values.
+//! Hints on the values of a DICOM volume, from its header.
 
 use super::header::Header;
 use super::header::found::Found;
@@ -9,13 +9,13 @@ use super::pixels::shape::{Colors, PixelNumber, Shape};
 use crate::data::{Hints, Meaning, Modality};
 
 impl Found {
-    /// What the series is called.
+    /// Returns the series description, or else the protocol name.
     pub(super) fn description(&self) -> &str {
         let said = [&self.series_description, &self.protocol];
         said.into_iter().find(|text| !text.is_empty()).map_or("", String::as_str)
     }
 
-    /// Everything that is said of how the series was acquired.
+    /// Returns series description and protocol name, joined if they differ.
     fn acquisition(&self) -> String {
         match (self.series_description.as_str(), self.protocol.as_str()) {
             (description, protocol) if description.is_empty() || description == protocol => {
@@ -26,11 +26,11 @@ impl Found {
         }
     }
 
-    /// The unit of rescaled values.
+    /// Returns the unit of rescaled values.
     fn unit(&self) -> &str {
         let is_scaled = self.all.slope.or(self.shared.slope).is_some();
         match (self.rescale_type.as_str(), self.units.as_str()) {
-            // "Unspecified".
+            // "US" means "unspecified".
             ("" | "US", "")
                 if self.modality == "CT" && is_scaled && !self.image_type.contains("LOCALIZER") =>
             {
@@ -43,9 +43,9 @@ impl Found {
     }
 }
 
-/// What a header says of the values of slices, which have a common slope and intercept or none.
+/// Collects the hints that a header gives on the values of slices, which share a slope and intercept, or have none.
 ///
-/// `has_masks` says that they are masks of segments, of which labels were made.
+/// `has_masks` tells that the slices are masks of segments, from which labels were made.
 pub(super) fn hints(
     found: &Found,
     shape: &Shape,
@@ -61,7 +61,7 @@ pub(super) fn hints(
     }
     hints.set_unit(found.unit());
     if let ([Some(center), Some(width)], true) = (slice.plane.window, width_is_usable(slice)) {
-        // PS3.3 section C.11.2.1.2: a width of 256 has 256 values.
+        // PS3.3 section C.11.2.1.2: a window of width 256 contains 256 values.
         let low = center - 0.5 - (width - 1.0) / 2.0;
         hints.set_window(low, low + width - 1.0);
     }
@@ -77,14 +77,14 @@ pub(super) fn hints(
     hints
 }
 
-/// The value of pixels that were not measured, as it is stored.
+/// Returns the stored value of unmeasured pixels (Pixel Padding Value).
 pub(super) fn stored_padding(found: &Found, shape: &Shape) -> Option<f64> {
     let PixelNumber::Integer(bits) = shape.number else { return None };
     let padding = found.padding?;
     Some(if bits.is_signed { f64::from(padding as i16) } else { f64::from(padding) })
 }
 
-/// The segment that is shown where several are, in words.
+/// Names the rule by which one of several overlapping segments is shown.
 pub(super) fn shown_of_overlapping(found: &Found) -> &'static str {
     match found.segmentation {
         Some(SegmentationType::Fractional) => "the largest share",
@@ -92,7 +92,7 @@ pub(super) fn shown_of_overlapping(found: &Found) -> &'static str {
     }
 }
 
-/// The value of a mask where all is of its segment.
+/// Returns the value of a mask pixel that lies entirely in its segment.
 pub(super) fn most_fraction(found: &Found) -> f64 {
     match found.segmentation {
         Some(SegmentationType::Fractional) => f64::from(found.most_fraction.unwrap_or(255)),
@@ -104,16 +104,16 @@ fn width_is_usable(slice: &Slice) -> bool {
     slice.plane.window[1].is_some_and(|width| width >= 1.0)
 }
 
-/// The part of its pictures that is shown of a volume.
+/// Flags that tell which part of the images a volume shows.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ShownPart {
-    /// One component of colours, which was chosen.
+    /// True if the user selected one component of colours.
     pub(super) is_component: bool,
-    /// Slices by themselves that lie side by side in a picture.
+    /// True if the slices were cut out of a mosaic.
     pub(super) is_unpacked: bool,
 }
 
-/// Remarks on how values are shown.
+/// Returns remarks for the user on how values are shown.
 pub(super) fn remarks(
     header: &Header,
     shape: &Shape,

@@ -1,56 +1,56 @@
-//! Slices of a volume, and the layers of its even grid that are made of them.
+//! Slices of a volume, and the layers of its regular grid, which are made from them.
 
 use std::ops::Range;
 
 use super::header::plane::Plane;
 
-/// A picture, or a part of one.
+/// Slice of a volume: one image, or one tile of a mosaic.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Slice {
-    /// Its file, by its number among the headers.
+    /// Index of its file among the headers.
     pub(crate) file: usize,
-    /// From 0.
+    /// Index of the frame within the file, from 0.
     pub(crate) frame: usize,
-    /// Of slices that lie side by side in one picture, from 0.
+    /// Index of the tile within a mosaic image, from 0; `None` for a whole image.
     pub(crate) tile: Option<usize>,
     pub(crate) plane: Plane,
 }
 
-/// A layer of a volume, made of pictures by their numbers.
+/// Layer of a volume's regular grid, made from slices by their indices.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Layer {
-    /// A picture as it is.
+    /// Voxels of a single slice, unchanged.
     Picture(usize),
-    /// Linear interpolation: this share of the second, the rest of the first.
+    /// Linear interpolation of two slices: `share` of the second, the rest of the first.
     Between {
         pictures: [usize; 2],
         share: f64,
-        /// No slice lies here, where one should.
+        /// True if a slice is missing at this position.
         is_missing: bool,
     },
-    /// The masks of segments.
+    /// Masks of segments at one position.
     Masks(Range<usize>),
-    /// Nothing is known.
+    /// Gap in which nothing was measured.
     Empty,
 }
 
-/// What stands where slices are missing.
+/// Rule for filling missing slices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Filling {
-    /// Means of the slices beside it.
+    /// Linear interpolation between the adjacent slices.
     Means,
-    /// The nearest slice: values are numbers of something.
+    /// Nearest slice, for values that are indices into a palette.
     Nearest,
-    /// No segment: only slices with one in them are stored.
+    /// No segment: only slices that contain a segment are stored.
     NoSegment,
 }
 
 impl Layer {
-    /// The pictures that it is made of.
+    /// Returns the indices of the slices that the layer is made from.
     pub(crate) fn pictures(&self) -> Range<usize> {
         match self {
             Self::Picture(picture) => *picture..*picture + 1,
-            // Neighbours.
+            // The two slices are adjacent.
             Self::Between { pictures: [low, high], .. } => *low..*high + 1,
             Self::Masks(pictures) => pictures.clone(),
             Self::Empty => 0..0,

@@ -1,4 +1,4 @@
-//! How the voxels of a layer are made of pictures: as they are, between two, or from the masks of segments.
+//! Voxels of a layer, from its slices: one slice, a blend of two, or a label layer from masks of segments.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -13,12 +13,12 @@ use super::pixels::store::Store;
 use crate::data::attempt::Attempt;
 use crate::data::load::LoadErrorKind;
 
-/// Why a volume was not read.
+/// Reason why a volume was not read.
 #[derive(Debug)]
 pub(super) enum Fault {
-    /// It cannot be.
+    /// Fatal error: no volume can be read.
     Load(LoadError),
-    /// These pictures, by their numbers, of so many; and why the first of them.
+    /// Unreadable slices, by their indices, among `total`; `why` is the error of the first.
     Unreadable { pictures: Vec<usize>, total: usize, why: LoadError },
 }
 
@@ -28,26 +28,26 @@ impl From<LoadError> for Fault {
     }
 }
 
-/// Pictures that layers are made of, and how their pixels become voxels.
+/// Slices that layers are made from, and the conversion of their pixels to voxels.
 pub(super) struct Source<'a> {
     pub(super) headers: &'a [Header],
-    /// Of the files that have slices among these.
+    /// Pixel stores of the files, by file index; `None` for files without slices to read.
     pub(super) stores: &'a [Option<Store>],
     pub(super) slices: &'a [Slice],
     pub(super) filling: Filling,
     pub(super) raster: Raster,
-    /// Each slice has a slope and an intercept of its own.
+    /// True if each slice has its own slope and intercept.
     pub(super) is_scaled: bool,
-    /// As it is stored.
+    /// Padding value, as stored in the file.
     pub(super) padding: Option<f64>,
-    /// The value of a mask that is all of a segment.
+    /// Value of a mask pixel that lies entirely in its segment.
     pub(super) most_fraction: f64,
-    /// Voxels of several segments, so far.
+    /// Number of voxels found so far that lie in several segments.
     pub(super) overlapping: AtomicU64,
     pub(super) control: &'a LoadControl,
 }
 
-/// Room for pictures, which one core needs again and again.
+/// Reusable buffers for images, one set per worker thread.
 #[derive(Debug)]
 pub(super) struct Scratch<T> {
     whole: Vec<T>,
@@ -63,21 +63,21 @@ impl<T> Default for Scratch<T> {
 }
 
 impl<T: Voxel> Scratch<T> {
-    /// A picture of so many pixels.
+    /// Takes the buffer for a whole image, resized to this many pixels.
     pub(super) fn taken_whole(&mut self, attempt: Attempt<'_>, pixels: usize) -> Result<Vec<T>, LoadError> {
         let mut whole = std::mem::take(&mut self.whole);
         resize(attempt, &mut whole, pixels)?;
         Ok(whole)
     }
 
-    /// Takes back a picture that was taken.
+    /// Puts the buffer of a whole image back for reuse.
     pub(super) fn give_back(&mut self, whole: Vec<T>) {
         self.whole = whole;
     }
 }
 
 impl Source<'_> {
-    /// Reads a layer.
+    /// Reads the voxels of a layer.
     pub(super) fn layer<T: Voxel>(
         &self,
         attempt: Attempt<'_>,
@@ -109,7 +109,7 @@ impl Source<'_> {
         Ok(())
     }
 
-    /// Adds this share of other voxels to the rest of these; where either is padding, there is padding.
+    /// Interpolates `voxels` towards `others` by `share`; padding in either gives padding.
     fn mix<T: Voxel>(&self, voxels: &mut [T], others: &[T], share: f64) {
         for (voxel, other) in voxels.iter_mut().zip(others) {
             let (low, high) = (voxel.value(), other.value());
@@ -120,7 +120,8 @@ impl Source<'_> {
         }
     }
 
-    /// Numbers of segments where their masks are: where several are, that of the largest share, or else the highest.
+    /// Reads a label layer from masks: each voxel gets the segment with the largest share, at least a half; at equal
+    /// shares the one with the highest number.
     fn masks<T: Voxel>(
         &self,
         attempt: Attempt<'_>,
@@ -153,7 +154,7 @@ impl Source<'_> {
         Ok(())
     }
 
-    /// Reads a picture, or its part; `mosaic` has room for the whole that it is a part of.
+    /// Reads a slice; `mosaic` is a buffer for the whole image that a tile is cut from.
     pub(super) fn picture<T: Voxel>(
         &self,
         slice: &Slice,
@@ -180,12 +181,12 @@ impl Source<'_> {
     }
 }
 
-/// Room for so many voxels.
+/// Allocates an empty vector for this many voxels.
 pub(super) fn reserved<T>(attempt: Attempt<'_>, count: usize) -> Result<Vec<T>, LoadError> {
     reserve(count).map_err(|_no_memory| no_memory(attempt, count))
 }
 
-/// The error that there is no room for so many voxels.
+/// Makes the error for voxels that do not fit in memory.
 pub(super) fn no_memory(attempt: Attempt<'_>, count: usize) -> LoadError {
     attempt.limit("data", format!("the memory for {count} voxels is not there"), "close other programs")
 }

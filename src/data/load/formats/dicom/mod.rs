@@ -1,8 +1,8 @@
-//! DICOM: the pictures of medical devices, a file each or many in one.
+//! DICOM: images of medical devices, one per file or several frames in one.
 //!
-//! After PS3.3 (what headers mean), PS3.5 (how data sets are written) and PS3.10 (files) of the standard at
-//! <https://www.dicomstandard.org/current>. A data set is read up to its pixels, of which only those that are shown are
-//! read. World space is left-posterior-superior millimetres in files, right-anterior-superior here.
+//! After PS3.3 (meaning of headers), PS3.5 (encoding of data sets) and PS3.10 (files) of the standard at
+//! <https://www.dicomstandard.org/current>. A data set is parsed up to its pixels, and only pixels to be shown are
+//! read. World space is left-posterior-superior millimetres in files, right-anterior-superior in volumes.
 
 mod groups;
 mod header;
@@ -34,10 +34,10 @@ use object_class::ObjectClass;
 use open_series::OpenSeries;
 use scan::{Scan, beside, scan};
 
-/// What is being done, for messages.
+/// Action that error messages name for a single file.
 const WHAT: &str = "read the DICOM file";
 
-/// As [`WHAT`], with a folder.
+/// Action that error messages name for a folder.
 const WHAT_SERIES: &str = "read the DICOM series";
 
 pub(super) const READER: Reader = Reader {
@@ -47,7 +47,8 @@ pub(super) const READER: Reader = Reader {
     load,
 };
 
-/// The series of which a file is a slice; none where it is something else, or holds all of it.
+/// Returns the identifier of the series of which a file is a slice; `None` for other files, and for files that hold a
+/// whole volume.
 pub(in crate::data::load) fn series_of(path: &Path, control: &LoadControl) -> Option<String> {
     let attempt = Attempt { what: WHAT, path };
     let mut input = Input::open(attempt).ok()?;
@@ -60,7 +61,7 @@ pub(in crate::data::load) fn series_of(path: &Path, control: &LoadControl) -> Op
     Some(header.found.series).filter(|series| is_slice && !series.is_empty())
 }
 
-/// Loads a DICOM file, and where it is one slice of a series, those beside it.
+/// Loads a DICOM file; if it is one slice of a series, the other slices in its folder as well.
 fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     let Source { path, input, start, options, control } = source;
     let attempt = Attempt { what: WHAT, path };
@@ -85,19 +86,20 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     let mut headers = vec![header];
     headers.extend(others);
     let mut remarks = drop_copies(&mut headers);
-    // Where nothing else says an order, that of the names counts.
+    // Without any other order, that of the file names counts.
     headers.sort_by_cached_key(|header| natural(&name_of(&header.path)));
     let main = headers.iter().position(|header| header.path == path);
     remarks.extend(why.map(|why| left_out(broken, headers.len() + broken, "files", &why)));
     let mut grouping = groups(&headers);
     if let Some(wrong) = grouping.unreadable.iter().position(|unreadable| Some(unreadable.file) == main) {
-        // Others of its series may be well, it is not.
+        // Other files of the series may be readable, but the named one is not.
         return Err(grouping.unreadable.swap_remove(wrong).why);
     }
     OpenSeries { attempt, path, headers: &headers, main, options, control }.load(grouping, remarks)
 }
 
-/// Loads the series in a folder's files; `None` where none is a DICOM file. `remarks` are what is known of the files.
+/// Loads a series from a folder's files; `None` if none is a DICOM file. `remarks` holds earlier remarks on the
+/// files.
 pub(super) fn load_folder(
     path: &Path,
     files: &[PathBuf],
@@ -121,17 +123,17 @@ pub(super) fn load_folder(
     open.load(grouping, remarks).map(Some)
 }
 
-/// How many of the files are DICOM files with pixels.
+/// Counts the DICOM files that have pixels.
 pub(super) fn count_pictures(files: &[PathBuf], control: &LoadControl) -> Result<usize, LoadError> {
     scan(files, control).map(|scan| scan.headers.len())
 }
 
-/// The name of a file.
+/// Returns the file name of a path, as text.
 fn name_of(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Why there is nothing to see in a file without pixels.
+/// Makes the error for a file without pixels, which tells what the file is.
 fn without_pixels(attempt: Attempt<'_>, header: &Header) -> LoadError {
     let found = &header.found;
     if found.is_directory {
@@ -155,9 +157,9 @@ fn without_pixels(attempt: Attempt<'_>, header: &Header) -> LoadError {
     }
 }
 
-/// Why there is nothing to see in a folder whose DICOM files have no pixels: so many of each kind.
+/// Makes the error for a folder whose DICOM files have no pixels, with a count of each kind of object.
 fn no_pixels_in_folder(attempt: Attempt<'_>, kinds: BTreeMap<String, usize>) -> LoadError {
-    // As many as a line has room for.
+    // As many kinds as fit on a line.
     const MOST_KINDS: usize = 6;
     let count: usize = kinds.values().sum();
     let listed = kinds.into_iter().take(MOST_KINDS).map(|(kind, count)| format!("{count} {kind}"));
@@ -169,7 +171,7 @@ fn no_pixels_in_folder(attempt: Attempt<'_>, kinds: BTreeMap<String, usize>) -> 
     )
 }
 
-/// Leaves out files that are copies of others.
+/// Drops files that are copies of others, by their SOP instance identifiers; returns a remark.
 fn drop_copies(headers: &mut Vec<Header>) -> Vec<String> {
     let mut seen = BTreeSet::new();
     let before = headers.len();

@@ -1,32 +1,32 @@
-//! Mosaics: the slices of a volume side by side in one picture, as Siemens scanners write them.
+//! Mosaics: the slices of a volume as tiles of one image, as Siemens scanners write them.
 
 use super::header::Header;
 use super::layer::Slice;
 use super::pixels::shape::Shape;
 
-/// Most slices of a mosaic: they are as many as the scans of the finest have, by far.
+/// Maximum number of tiles: far more than the finest scans have slices.
 const MOST_TILES: f64 = 4096.0;
 
-/// How slices lie in a picture: row after row, in a square that has room for all of them.
+/// Layout of a mosaic: tiles in rows, in the smallest square that holds them all.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Mosaic {
     count: usize,
-    /// Slices in a row, and in a column.
+    /// Number of tiles in a row, and in a column.
     across: usize,
-    /// Pixels of a slice.
+    /// Size of a tile in pixels.
     columns: usize,
     rows: usize,
-    /// Slices go to where the picture's own normal comes from.
+    /// True if the slices advance against the normal of the image plane.
     is_backwards: bool,
 }
 
-/// Whether a picture is a mosaic, as its image type says.
+/// True if the image type marks the file as a mosaic.
 pub(crate) fn is_mosaic(header: &Header) -> bool {
     header.found.image_type.contains("MOSAIC") && header.frame_count() == 1
 }
 
 impl Mosaic {
-    /// How slices lie in a file's picture; `None` where it is no mosaic, or does not say how many slices it has.
+    /// Returns the layout of a file's mosaic; `None` for other images, and if the number of slices is not stated.
     pub(crate) fn new(header: &Header) -> Option<Self> {
         let found = &header.found;
         let count = found.mosaic_count.filter(|count| (1.0..=MOST_TILES).contains(count))?;
@@ -41,13 +41,13 @@ impl Mosaic {
         Some(Self { count: count as usize, across, columns, rows, is_backwards })
     }
 
-    /// How the pixels of a slice are stored in a picture of this shape.
+    /// Returns the pixel layout of a tile, given that of the whole image.
     pub(crate) fn tile_shape(&self, shape: Shape) -> Shape {
         Shape { columns: self.columns, rows: self.rows, ..shape }
     }
 
-    /// The slices of a picture. Its position is that of a picture as large as the mosaic around the first slice's middle
-    /// (after `dcm2niix` and SPM, which found that out).
+    /// Returns the slices of a mosaic. Its stated position is the corner of an image as large as the mosaic, centred
+    /// on the first slice (after `dcm2niix` and SPM, which found that out).
     pub(crate) fn tiles(&self, picture: &Slice) -> Vec<Slice> {
         let plane = &picture.plane;
         let across_mm = plane.between.or(plane.thickness).unwrap_or(0.0).abs();
@@ -71,7 +71,7 @@ impl Mosaic {
         (0..self.count).map(tile).collect()
     }
 
-    /// Takes a slice out of the whole picture.
+    /// Copies a tile out of the whole image.
     pub(crate) fn pick<T: Copy>(&self, tile: usize, picture: &[T], voxels: &mut [T]) {
         let width = self.columns * self.across;
         let first = tile / self.across * self.rows * width + tile % self.across * self.columns;

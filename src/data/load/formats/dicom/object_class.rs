@@ -1,11 +1,11 @@
-//! Kinds of DICOM objects that are no pictures (PS3.4 annex B, PS3.6 annex A), and what helps with them.
+//! DICOM objects without pixels (PS3.4 annex B, PS3.6 annex A), with advice for the user.
 
-/// A kind of object without pixels.
+/// Class of DICOM objects that have no pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct ObjectClass {
-    /// The name of the standard.
+    /// Name of the class in the standard.
     pub(crate) name: &'static str,
-    /// What a user can do with it.
+    /// Advice to the user on handling such a file.
     pub(crate) help: &'static str,
 }
 
@@ -23,7 +23,8 @@ const SURFACE: &str = "open it as a surface in 3D Slicer, and save a segmentatio
 
 const REGISTRATION: &str = "apply it in 3D Slicer, and save the volume that it moves as NRRD";
 
-/// The last parts of identifiers below [`STORAGE`], what they begin, and what helps. Longer ones come first.
+/// Suffixes of class identifiers below [`STORAGE`]; one that ends with a dot matches by prefix. Longer ones come
+/// first.
 const CLASSES: &[(&str, ObjectClass)] = &[
     ("481.3", ObjectClass { name: "RT Structure Set (contours)", help: CONTOURS }),
     ("481.5", ObjectClass { name: "RT Plan", help: PLAN }),
@@ -89,11 +90,11 @@ const CLASSES: &[(&str, ObjectClass)] = &[
     ("131", ObjectClass { name: "Basic Structured Display", help: OPEN_PICTURES }),
 ];
 
-/// What the identifiers of objects that are stored begin with.
+/// Common prefix of the identifiers of storage classes.
 const STORAGE: &str = "1.2.840.10008.5.1.4.1.1.";
 
 impl ObjectClass {
-    /// The kind of object of a SOP class identifier; `None` where it is not among those known here.
+    /// Looks up the class of a SOP class identifier; `None` if it is not listed here.
     pub(crate) fn from_uid(uid: &str) -> Option<Self> {
         let rest = uid.strip_prefix(STORAGE)?;
         let is_of = |part: &str| if part.ends_with('.') { rest.starts_with(part) } else { rest == part };

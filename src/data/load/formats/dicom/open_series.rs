@@ -1,4 +1,4 @@
-//! One volume of the series of files: which is meant, and how it is read where not all of its slices can be.
+//! Selection of one volume among the series of files, and reading it without unreadable slices.
 
 use std::path::Path;
 
@@ -14,24 +14,24 @@ use super::voxels::{self, VolumeRequest};
 use crate::data::attempt::{Attempt, Dimension};
 use crate::data::{Volume, plain};
 
-/// How often a volume is read anew without the slices that could not be: those that are found with the first are left
-/// out at once, and only files that change meanwhile have more.
+/// Maximum number of attempts to read a volume without its unreadable slices: all of them are found at the first
+/// failure, so that more attempts are needed only if files change meanwhile.
 const MOST_TRIES: usize = 3;
 
-/// Files of which a volume is opened.
+/// Files from which one volume is opened.
 pub(super) struct OpenSeries<'a> {
     pub(super) attempt: Attempt<'a>,
-    /// The file or folder that was named.
+    /// File or folder that the user named.
     pub(super) path: &'a Path,
     pub(super) headers: &'a [Header],
-    /// The file among the headers that says what is meant.
+    /// Index of the header of the file that the user named; it selects the volume.
     pub(super) main: Option<usize>,
     pub(super) options: &'a LoadOptions,
     pub(super) control: &'a LoadControl,
 }
 
 impl OpenSeries<'_> {
-    /// Reads the volume that is meant; `remarks` are what is known already.
+    /// Reads the selected volume; `remarks` holds earlier remarks on the files.
     pub(super) fn load(&self, mut grouping: Grouping, mut remarks: Vec<String>) -> Result<Volume, LoadError> {
         let unreadable = std::mem::take(&mut grouping.unreadable);
         if grouping.groups.is_empty() {
@@ -40,7 +40,7 @@ impl OpenSeries<'_> {
         let mut series = Series::all(grouping, self.headers);
         let all: usize = series.iter().map(Series::pictures).sum();
         if let Some(main) = self.main {
-            // The file itself says what is meant, unless it lies where another does.
+            // The named file selects the volume, unless it was dropped for another at the same position.
             if series.iter().any(|series| series.volume_of(main).is_some()) {
                 series.retain(|series| series.volume_of(main).is_some());
             }
@@ -68,7 +68,7 @@ impl OpenSeries<'_> {
         self.read(series, volume, remarks)
     }
 
-    /// Reads a volume of a series, without the slices that cannot be read.
+    /// Reads a volume of a series, leaving out slices that cannot be read.
     fn read(&self, series: Series, volume: usize, mut remarks: Vec<String>) -> Result<Volume, LoadError> {
         let Series { shape, filling, has_masks, mut stack, .. } = series;
         let volume = stack.volumes.swap_remove(volume);
@@ -100,7 +100,7 @@ impl OpenSeries<'_> {
         Err(self.attempt.bad_input("files", "they change while they are read", "open them again"))
     }
 
-    /// Why no volume is opened where not one file can be read.
+    /// Makes the error for a series without a single readable file.
     fn none_is_read(&self, mut unreadable: Vec<UnreadableFile>) -> LoadError {
         let count = unreadable.len();
         if unreadable.is_empty() {
@@ -109,7 +109,7 @@ impl OpenSeries<'_> {
         counted(unreadable.swap_remove(0).why, count, "files")
     }
 
-    /// What users should know of files that cannot be read.
+    /// Returns remarks for the user on unreadable files, of this series and of others.
     fn unreadable_remarks(&self, unreadable: &[UnreadableFile], series: &str) -> Vec<String> {
         let is_own = |file: usize| self.headers[file].found.series == series;
         let (own, others): (Vec<_>, Vec<_>) =
@@ -122,7 +122,7 @@ impl OpenSeries<'_> {
         own_remark.into_iter().chain(others_remark).collect()
     }
 
-    /// What a series is called, or else what its file or folder is.
+    /// Returns the description of the series for several slices, or else the name of the file or folder.
     fn name(&self, slices: &[Slice]) -> String {
         let first = slices.first().filter(|_| slices.len() > 1);
         let said = first.map(|slice| self.headers[slice.file].found.description());
@@ -131,7 +131,7 @@ impl OpenSeries<'_> {
     }
 }
 
-/// What users should know where one file was named: how many of all pictures of its series are shown.
+/// Returns remarks for the user if one file was named: how many images of its series are shown.
 fn of_main(count: usize, all: usize) -> Vec<String> {
     let shown =
         (count > 1).then(|| format!("the {count} slices of its series in the same folder are shown with it"));
@@ -140,7 +140,7 @@ fn of_main(count: usize, all: usize) -> Vec<String> {
     shown.into_iter().chain(left).collect()
 }
 
-/// The same error, with a count of what all of it is true of.
+/// Adds to an error the number of items that it applies to.
 fn counted(why: LoadError, count: usize, what: &str) -> LoadError {
     match why {
         LoadError::BadInput(mut explanation) if count > 1 => {

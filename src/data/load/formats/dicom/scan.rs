@@ -1,4 +1,4 @@
-//! The headers of many files, read on all cores; pixels are left alone.
+//! Scan of many files for DICOM headers, on all cores; pixels are not read.
 
 use std::collections::BTreeMap;
 use std::io::Read as _;
@@ -11,37 +11,37 @@ use super::super::{LoadControl, LoadError};
 use super::header::{Header, is_dicom};
 use crate::data::attempt::Attempt;
 
-/// Most files beside one that are looked at, for others of its series.
+/// Maximum number of files in a folder that are examined for slices of the same series.
 const MOST_BESIDE: usize = 1 << 16;
 
-/// Bytes of a file's beginning that say whether it is one.
+/// Number of bytes from a file's beginning that are examined for the magic bytes.
 const START_BYTES: u64 = 1024;
 
-/// What was found in files.
+/// Result of scanning files for DICOM headers.
 #[derive(Debug, Default)]
 pub(super) struct Scan {
-    /// Of those with pixels, in the files' order.
+    /// Headers of files with pixels, in the order of the files.
     pub(super) headers: Vec<Header>,
-    /// DICOM files without pixels: how many of each kind.
+    /// Number of DICOM files without pixels, by kind of object.
     pub(super) without_pixels: BTreeMap<String, usize>,
-    /// DICOM files that cannot be read.
+    /// Number of DICOM files that cannot be read.
     pub(super) broken: usize,
-    /// Why the first of them cannot be.
+    /// Error of the first file that cannot be read.
     pub(super) why: Option<LoadError>,
 }
 
 enum Seen {
     Header(Box<Header>),
-    /// Of this kind.
+    /// DICOM file without pixels, of this kind.
     WithoutPixels(String),
     Broken(LoadError),
     Other,
 }
 
-/// Reads the headers of all DICOM files among some.
+/// Reads the headers of all DICOM files among `files`.
 ///
 /// # Errors
-/// `Cancelled` alone: what cannot be read is counted.
+/// `Cancelled` alone: files that cannot be read are counted.
 pub(super) fn scan(files: &[PathBuf], control: &LoadControl) -> Result<Scan, LoadError> {
     let lengths = files.iter().map(|path| path.metadata().map_or(0, |metadata| metadata.len()));
     control.start(lengths.sum());
@@ -66,7 +66,7 @@ fn look(path: &Path, control: &LoadControl) -> Result<Seen, LoadError> {
     let attempt = Attempt { what: super::WHAT, path };
     let Ok(mut input) = Input::open(attempt) else { return Ok(Seen::Other) };
     let length = input.len;
-    // Not through the buffer, which is large: most files beside one may be something else.
+    // Not through the buffer, which is large: most files in the folder may be of another kind.
     let mut start = Vec::new();
     let looked = input.reader.get_ref().take(START_BYTES).read_to_end(&mut start);
     if looked.is_err() || input.seek(0).is_err() || !is_dicom(&start) {
@@ -83,7 +83,7 @@ fn look(path: &Path, control: &LoadControl) -> Result<Seen, LoadError> {
     Ok(seen)
 }
 
-/// The files in the folder of one, without it; none where the folder cannot be read or has too many.
+/// Returns the other files in the folder of a file; empty if the folder cannot be read or has too many.
 pub(super) fn beside(path: &Path) -> Vec<PathBuf> {
     let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let Ok(entries) = std::fs::read_dir(parent) else { return Vec::new() };
@@ -98,7 +98,7 @@ pub(super) fn beside(path: &Path) -> Vec<PathBuf> {
         }
         files.push(entry.path());
     }
-    // The order in which a system lists files says nothing.
+    // Directory listings have no defined order.
     files.sort();
     files
 }

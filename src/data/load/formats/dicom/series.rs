@@ -1,4 +1,4 @@
-//! The series of files: which volumes each has, and which of them comes first.
+//! Series of files, with their volumes, in the order in which they are offered.
 
 use rayon::prelude::*;
 
@@ -9,7 +9,7 @@ use super::pixels::shape::Shape;
 use super::stack::{Stack, StackedVolume};
 use crate::data::attempt::Offer;
 
-/// Pictures of one series that are of one size and lie in parallel: one volume, or one for each phase.
+/// Images of one series with equal size and parallel planes: one volume, or one per phase.
 #[derive(Debug)]
 pub(super) struct Series {
     name: String,
@@ -20,8 +20,8 @@ pub(super) struct Series {
 }
 
 impl Series {
-    /// All series of files, the largest volume first: a scout of one slice, numbered before the scan that it was taken
-    /// for, comes behind that. Films and pictures without depth come last.
+    /// Collects all series of the files, largest volume first: a localiser of one slice, numbered before its scan,
+    /// comes after it. Series without depth (cine, or images without positions) come last.
     pub(super) fn all(grouping: Grouping, headers: &[Header]) -> Vec<Self> {
         let Grouping { groups, image_types, .. } = grouping;
         let of_group = |group: Group| {
@@ -31,28 +31,28 @@ impl Series {
             Self { name, shape, filling, has_masks, stack }
         };
         let mut all: Vec<Self> = groups.into_par_iter().map(of_group).collect();
-        // Equal ones stay in the order of their numbers.
+        // Equal ones keep the order of their numbers (stable sort).
         all.sort_by_key(|series| std::cmp::Reverse((series.stack.has_depth, series.voxels())));
         all
     }
 
-    /// Voxels of its first volume.
+    /// Returns the number of voxels of the first volume.
     fn voxels(&self) -> u128 {
         self.dims().into_iter().map(u128::from).product()
     }
 
-    /// Voxels of its first volume along x, y, z.
+    /// Returns the dimensions of the first volume, in voxels along x, y, z.
     fn dims(&self) -> [u64; 3] {
         let layers = self.stack.volumes.first().map_or(0, |volume| volume.layers.len());
         dims(&self.shape, layers)
     }
 
-    /// What users are offered it as.
+    /// Returns the series as an item to choose from.
     pub(super) fn offer(&self, number: usize) -> Offer {
         Offer::numbered(number, &self.name, self.dims())
     }
 
-    /// What users are offered its volumes as.
+    /// Returns the volumes of the series as items to choose from.
     pub(super) fn volume_offers(&self) -> Vec<Offer> {
         let offer = |(number, volume): (usize, &StackedVolume)| {
             Offer::numbered(number, &volume.name, dims(&self.shape, volume.layers.len()))
@@ -60,18 +60,18 @@ impl Series {
         self.stack.volumes.iter().enumerate().map(offer).collect()
     }
 
-    /// The number of the volume that has a slice of a file.
+    /// Returns the index of the volume that contains a slice of the file.
     pub(super) fn volume_of(&self, file: usize) -> Option<usize> {
         let has = |volume: &StackedVolume| volume.slices.iter().any(|slice| slice.file == file);
         self.stack.volumes.iter().position(has)
     }
 
-    /// The file of its first picture.
+    /// Returns the file index of the first image.
     pub(super) fn first_file(&self) -> Option<usize> {
         self.stack.volumes.first()?.slices.first().map(|slice| slice.file)
     }
 
-    /// How many pictures it has.
+    /// Returns the number of images in all volumes.
     pub(super) fn pictures(&self) -> usize {
         self.stack.volumes.iter().map(|volume| volume.slices.len()).sum()
     }

@@ -1,4 +1,4 @@
-//! The voxels of layers: each is read, unpacked and rescaled on a core of its own.
+//! Voxels of a DICOM volume: layers are read, decompressed and rescaled in parallel.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -21,7 +21,7 @@ use super::stack::StackedVolume;
 use crate::data::attempt::{Attempt, Extent, Kept};
 use crate::data::{Samples, Volume, VoxelType};
 
-/// A volume of files that is meant.
+/// Volume to be read: its slices and layers, and the storage of their pixels.
 pub(super) struct VolumeRequest<'a> {
     pub(super) name: String,
     pub(super) headers: &'a [Header],
@@ -34,7 +34,7 @@ pub(super) struct VolumeRequest<'a> {
 /// Reads a volume.
 ///
 /// # Errors
-/// [`Fault::Unreadable`] names the pictures that cannot be read, where others can.
+/// [`Fault::Unreadable`] lists the slices that cannot be read, if others can.
 pub(super) fn load(
     attempt: Attempt<'_>,
     request: &VolumeRequest<'_>,
@@ -51,7 +51,7 @@ pub(super) fn load(
         return Err(why.into());
     };
     let scale = if request.has_masks { [1.0, 0.0] } else { first.plane.scale() };
-    // What colours and segments are called is not rescaled.
+    // Colours and segment numbers are not rescaled.
     let is_scaled =
         shape.samples == 1 && !request.has_masks && slices.iter().any(|slice| slice.plane.scale() != scale);
     let voxel_type = request.voxel_type(is_scaled);
@@ -100,14 +100,14 @@ pub(super) fn load(
 }
 
 impl VolumeRequest<'_> {
-    /// The type of the voxels before they are rescaled.
+    /// Returns the type of the voxels before a common rescaling.
     fn voxel_type(&self, is_scaled: bool) -> VoxelType {
         let StackedVolume { slices, layers, .. } = &self.volume;
         if self.has_masks {
             let highest = slices.iter().filter_map(|slice| slice.plane.segment).max().unwrap_or(1);
             return if u8::try_from(highest).is_ok() { VoxelType::U8 } else { VoxelType::U16 };
         }
-        // Only real numbers have one that is none.
+        // Only floating-point types have a value for unmeasured voxels (NaN).
         let has_nothing = self.filling == Filling::Means && layers.contains(&Layer::Empty);
         match self.shape.voxel_type() {
             VoxelType::U32 | VoxelType::I32 | VoxelType::F64 if is_scaled || has_nothing => VoxelType::F64,
@@ -117,7 +117,7 @@ impl VolumeRequest<'_> {
     }
 }
 
-/// Finds the pixels of all files that have some of the slices.
+/// Opens the pixel stores of all files that contribute a slice.
 fn stores<'a>(
     headers: &[Header],
     slices: impl Iterator<Item = &'a Slice>,
@@ -136,7 +136,7 @@ fn stores<'a>(
     found.collect()
 }
 
-/// The layers of a volume, and what they are made of.
+/// Layers of a volume, with the source of their voxels.
 struct Layers<'a> {
     source: &'a Source<'a>,
     list: &'a [Layer],
@@ -144,7 +144,7 @@ struct Layers<'a> {
 }
 
 impl Layers<'_> {
-    /// Reads what is kept.
+    /// Reads the kept part of the volume, averaged if requested.
     fn read(
         &self,
         attempt: Attempt<'_>,
@@ -153,7 +153,8 @@ impl Layers<'_> {
         meant: &Meant<'_>,
     ) -> Result<Voxels, Fault> {
         let boxed = kept.boxed_if_averaged();
-        // The first picture, before there is room for all: one that is not what its header says asks for none.
+        // Reads one pixel of the first layer before memory for the volume is allocated: an image that contradicts its
+        // header must not cost any.
         let first = kept.low[2];
         let one = Kept { low: [0, 0, first], high: [1, 1, first + 1], ..Kept::all(kept.grid) };
         self.stretch(attempt, &one, voxel_type)?;
@@ -173,7 +174,7 @@ impl Layers<'_> {
         })
     }
 
-    /// Reads voxels that are not averaged.
+    /// Reads a part of the volume without averaging, in the given type.
     fn stretch(&self, attempt: Attempt<'_>, kept: &Kept, voxel_type: VoxelType) -> Result<Samples, Fault> {
         match voxel_type {
             VoxelType::U8 => self.voxels(attempt, kept).map(Samples::U8),
@@ -210,7 +211,8 @@ impl Layers<'_> {
         Ok(voxels)
     }
 
-    /// Where a picture could not be read: all that cannot be, so that the others can be shown without them.
+    /// After a failure, tests all slices of the kept layers and lists every unreadable one, so that the others can be
+    /// shown.
     fn looked_into(&self, kept: &Kept, fault: Fault) -> Fault {
         let Fault::Unreadable { why, .. } = fault else { return fault };
         let mut pictures: Vec<usize> = kept.slices().flat_map(|layer| self.list[layer].pictures()).collect();

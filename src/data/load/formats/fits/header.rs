@@ -1,5 +1,5 @@
-//! Header of a FITS unit: cards of 80 letters, each with a keyword and mostly a value, up to the card `END`; 36 cards fill a
-//! block.
+//! Header of a FITS unit: cards of 80 characters, each with a keyword and usually a value, up to the card `END`; a
+//! block holds 36 cards.
 
 use std::collections::BTreeMap;
 
@@ -8,36 +8,36 @@ use super::super::samples::{Fault, fill};
 use super::super::{LoadControl, LoadError};
 use crate::data::attempt::{Attempt, quoted};
 
-/// Bytes of a block; headers and data fill whole ones (section 3.1 of the standard).
+/// Size of a block in bytes; headers and data occupy whole blocks (section 3.1 of the standard).
 pub(super) const BLOCK_BYTES: u64 = 2880;
 
-/// Bytes of a card (section 4.1).
+/// Size of a card in bytes (section 4.1).
 const CARD_BYTES: usize = 80;
 
-/// Most blocks of a header: 72 000 cards. Mosaics that list all exposures have some thousand.
+/// Maximum number of blocks of a header: 72 000 cards. Mosaics that list all exposures have some thousand.
 const MOST_BLOCKS: u64 = 2000;
 
-/// Axes that a file may announce (`NAXIS`, section 4.4.1.1).
+/// Maximum number of axes that a file may announce (`NAXIS`, section 4.4.1.1).
 const MOST_AXES: i64 = 999;
 
 const HELP: &str = "copy or download the file again";
 
-/// Values of a header, by their keywords.
+/// Header of a FITS unit: values by keyword.
 #[derive(Debug, Default)]
 pub(super) struct Header {
-    /// Text without its quotes, everything else as it is written.
+    /// Values by keyword: strings without their quotes, everything else as written.
     values: BTreeMap<String, String>,
-    /// Keyword of the first card: it says what unit it is.
+    /// Keyword of the first card, which tells the primary unit from extensions.
     first: String,
-    /// Bytes of the header, with what fills its last block.
+    /// Size of the header in bytes, including the fill of its last block.
     pub(super) bytes: u64,
 }
 
 impl Header {
-    /// Reads the header that comes next; `None` at the end of the file, and for what follows the last unit and is none.
+    /// Reads the next header; `None` at the end of the file, and for trailing bytes that are no unit.
     ///
     /// # Errors
-    /// `BadInput` for a file that is broken, and for a first header without an end; `Limit` for one that is too long.
+    /// `BadInput` for a corrupt file, and for a first header without an end; `Limit` for a header that is too long.
     pub(super) fn read(
         attempt: Attempt<'_>,
         content: &mut Content,
@@ -69,7 +69,7 @@ impl Header {
         }
     }
 
-    /// Takes the cards of a block; whether the last was among them.
+    /// Adds the cards of a block; returns true if the card `END` was among them.
     fn add_cards(&mut self, block: &[u8]) -> bool {
         for card in block.chunks_exact(CARD_BYTES) {
             let (keyword, rest) = card.split_at(8);
@@ -80,38 +80,39 @@ impl Header {
             if keyword == "END" {
                 return true;
             }
-            // Cards without it are comments.
+            // Cards without the value indicator `= ` are comments.
             let Some(value) = rest.strip_prefix(b"= ") else { continue };
             self.values.entry(keyword).or_insert_with(|| value_of(&String::from_utf8_lossy(value)));
         }
         false
     }
 
-    /// Keyword of the first card.
+    /// Returns the keyword of the first card.
     pub(super) fn first(&self) -> &str {
         &self.first
     }
 
-    /// Text of a keyword; empty where it is not there.
+    /// Returns the text of a keyword, trimmed; empty if the header lacks it.
     pub(super) fn text(&self, keyword: &str) -> &str {
         self.values.get(keyword).map_or("", |value| value.trim())
     }
 
-    /// Whether a keyword has the value true.
+    /// Returns true if a keyword has the logical value `T`.
     pub(super) fn is_true(&self, keyword: &str) -> bool {
         self.text(keyword) == "T"
     }
 
-    /// A real number; `None` where it is not there, or is none. Exponents may be written with D.
+    /// Returns a finite real number; `None` if the keyword is absent or has another value. Exponents may be written
+    /// with D.
     pub(super) fn float(&self, keyword: &str) -> Option<f64> {
         let text = self.values.get(keyword)?.replace(['D', 'd'], "E");
         text.trim().parse().ok().filter(|value: &f64| value.is_finite())
     }
 
-    /// A whole number; `None` where it is not there.
+    /// Returns an integer; `None` if the keyword is absent.
     ///
     /// # Errors
-    /// `BadInput` for anything else.
+    /// `BadInput` for a value that is no integer.
     pub(super) fn int(&self, attempt: Attempt<'_>, keyword: &str) -> Result<Option<i64>, LoadError> {
         let Some(text) = self.values.get(keyword) else { return Ok(None) };
         let whole = text.trim().trim_end_matches('.').parse().ok();
@@ -121,14 +122,14 @@ impl Header {
         })
     }
 
-    /// A whole number that must be there.
+    /// Returns an integer whose keyword is mandatory.
     pub(super) fn required_int(&self, attempt: Attempt<'_>, keyword: &str) -> Result<i64, LoadError> {
         self.int(attempt, keyword)?.ok_or_else(|| {
             attempt.bad_input(keyword, "the header does not have this keyword, which every unit has", HELP)
         })
     }
 
-    /// Lengths of all axes, the fastest first.
+    /// Returns the lengths of all axes, fastest first.
     pub(super) fn axes(&self, attempt: Attempt<'_>) -> Result<Vec<u64>, LoadError> {
         let count = self.required_int(attempt, "NAXIS")?;
         if !(0..=MOST_AXES).contains(&count) {
@@ -146,7 +147,7 @@ impl Header {
     }
 }
 
-/// The value behind `= `: text in quotes, in which a quote is written twice, or whatever stands before a comment.
+/// Parses the value behind `= `: a quoted string, in which a quote is doubled, or the text before a comment.
 fn value_of(text: &str) -> String {
     let text = text.trim_start();
     let Some(quoted) = text.strip_prefix('\'') else {
@@ -164,7 +165,7 @@ fn value_of(text: &str) -> String {
     value
 }
 
-/// The error for a header that could not be read.
+/// Makes the error for a header that could not be read.
 pub(super) fn unread(attempt: Attempt<'_>, fault: Fault) -> LoadError {
     match fault.of_stream() {
         Fault::Corrupt(error) => {

@@ -1,8 +1,8 @@
-//! FITS, the pictures and cubes of astronomy: units of a header of text and data behind it.
+//! FITS, the image and cube format of astronomy: units of a text header and the data behind it.
 //!
-//! After the FITS standard, version 4.0 (<https://fits.gsfc.nasa.gov/fits_standard.html>), whose sections and tables are named
-//! here. The first pixel is shown at the lower left, as other programs show it: rows are put into the order of pictures, from
-//! the top down, and lie in the world where they did.
+//! After the FITS standard, version 4.0 (<https://fits.gsfc.nasa.gov/fits_standard.html>), whose sections and tables
+//! are cited in this module. The first pixel is shown at the lower left, as in other programs: rows are reordered
+//! from the top down, and keep their positions in the world.
 
 mod header;
 mod layout;
@@ -35,7 +35,7 @@ pub(super) const READER: Reader = Reader {
 
 const HELP: &str = "check the header, or copy the file again";
 
-/// Loads a FITS file.
+/// Loads a FITS file: the chosen array, and the chosen volume of it.
 fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     let attempt = Attempt { what: "read the FITS file", path: source.path };
     let (options, control) = (source.options, source.control);
@@ -43,7 +43,7 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
         let why = "it does not begin with the keyword SIMPLE, as FITS files do";
         return Err(attempt.bad_input("header", why, "check the file's name and format"));
     }
-    // What is compressed cannot be gone back in: it is opened a second time for what is wanted.
+    // A gzip stream cannot be rewound: the file is opened a second time for the data.
     let is_gzip = source.start.is_gzip();
     let mut units = Units::read(attempt, &mut Content::of(Input::open(attempt)?, is_gzip), is_gzip, control)?;
     let remark = units.remark();
@@ -58,7 +58,7 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     let count = layout.outer.map_or(1, |(_, count)| count);
     let frame = source.numbered(attempt, dimension, count, layout.dims, name)? as u64;
     let stored = Stored::scalar(layout.number, Endian::Big);
-    // Blocks begin with the rows of a picture, at the top, and so what is averaged is read before that.
+    // Blocks for averaging begin at the top row of the image, so the data are averaged after the rows are reversed.
     let is_averaged =
         options.choice.portion.is_some_and(|portion| matches!(portion.thinning, Thinning::Average(_)));
     let checked = if is_averaged { Extent::checked_whole } else { Extent::checked };
@@ -86,7 +86,7 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     Parts { name, extent, placement, voxels, hints }.volume(attempt)
 }
 
-/// What a header says of its values.
+/// Collects the hints that a header gives on values: unit, instrument and object.
 fn hints(header: &Header) -> Hints {
     let mut hints = Hints::default();
     hints.set_unit(header.text("BUNIT"));

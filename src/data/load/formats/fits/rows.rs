@@ -1,4 +1,4 @@
-//! Rows from the top down, as pictures have them, where a file has them from the lowest on.
+//! Row order of FITS images: files store the lowest row first, volumes store the top row first.
 
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -6,8 +6,8 @@ use crate::data::Samples;
 use crate::data::attempt::Kept;
 use crate::data::values::samples::with_samples;
 
-/// What is kept of a grid whose rows are counted from the top, in a file that counts them from the lowest: the same rows, in
-/// the opposite order. Not for blocks that are averaged, the last of which may be smaller.
+/// Converts the kept part of a grid whose rows are counted from the top to the row order of the file, counted from
+/// the bottom: the same rows, in reverse. Not valid for block averages, as the last block may be smaller.
 pub(super) fn kept_in_file(kept: Kept) -> Kept {
     let [_, rows, _] = kept.dims();
     let lowest = kept.low[1] + rows.saturating_sub(1) * kept.step[1];
@@ -18,7 +18,7 @@ pub(super) fn kept_in_file(kept: Kept) -> Kept {
     Kept { low, high, step, ..kept }
 }
 
-/// Puts the last row of each slice first.
+/// Reverses the order of the rows of each slice.
 pub(super) fn reverse(samples: &mut Samples, [nx, ny, _]: [usize; 3]) {
     with_samples!(samples, values => {
         for slice in values.chunks_exact_mut(nx * ny) {
@@ -30,7 +30,7 @@ pub(super) fn reverse(samples: &mut Samples, [nx, ny, _]: [usize; 3]) {
     });
 }
 
-/// Indices of a grid of so many rows, counted from the top, to those of the file.
+/// Returns the affine from grid indices, with `rows` rows counted from the top, to the indices of the file.
 pub(super) fn file_from_index(rows: u64) -> DAffine3 {
     let matrix3 = DMat3::from_diagonal(DVec3::new(1.0, -1.0, 1.0));
     DAffine3 { matrix3, translation: DVec3::new(0.0, rows as f64 - 1.0, 0.0) }

@@ -1,8 +1,8 @@
-//! Distances between the voxels of a FITS file, by its world coordinates (section 8 of the standard).
+//! Voxel spacing of a FITS file, from its world coordinates (section 8 of the standard).
 //!
-//! Voxels are shown where pixels are, as other programs show them: the file's coordinates turn nothing and mirror nothing.
-//! Only how long steps are is taken from them. Degrees on the sky are no lengths, but they compare; metres along one axis and
-//! hertz along another do not.
+//! The coordinates neither rotate nor mirror the image: pixels are shown where other programs show them. Only the
+//! lengths of the steps are used. Degrees on the sky are no lengths, but comparable with each other; metres along one
+//! axis and hertz along another are not.
 
 use super::super::placement::Placement;
 use super::header::Header;
@@ -10,29 +10,29 @@ use super::layout::Layout;
 use crate::data::attempt::is_usable_spacing;
 use crate::data::plain;
 
-/// Types of coordinates along a spectrum, the first four letters: those of table 25, and what programs write beside them.
+/// First four letters of spectral coordinate types: those of table 25, and others in common use.
 const SPECTRAL: [&str; 16] = [
     "FREQ", "ENER", "WAVN", "VRAD", "WAVE", "VOPT", "ZOPT", "AWAV", "VELO", "BETA", "FELO", "LAMB", "VLSR",
     "CHAN", "PIXE", "LINE",
 ];
 
-/// Types of coordinates on the sky, the first four letters (section 8.3).
+/// First four letters of celestial coordinate types (section 8.3).
 const CELESTIAL: [&str; 12] =
     ["RA--", "DEC-", "GLON", "GLAT", "ELON", "ELAT", "HLON", "HLAT", "SLON", "SLAT", "HPLN", "HPLT"];
 
-/// What a coordinate is measured in.
+/// Unit of a world coordinate, after conversion.
 #[derive(Debug, Clone, PartialEq)]
 enum Unit {
-    /// Angles, in degrees.
+    /// Angle on the sky, in degrees.
     Angle,
-    /// Lengths, in millimetres.
+    /// Length in space, in millimetres.
     Length,
-    /// Something else, by its name: comparable with itself alone.
+    /// Any other unit, by its name; comparable only with itself.
     Other(String),
 }
 
 impl Unit {
-    /// In words.
+    /// Returns the unit's name for remarks to the user.
     fn name(&self) -> &str {
         match self {
             Self::Angle => "degrees",
@@ -43,19 +43,19 @@ impl Unit {
     }
 }
 
-/// One step along an axis.
+/// Step from one pixel to the next along an axis: length and unit.
 #[derive(Debug, Clone)]
 struct Step {
     length: f64,
     unit: Unit,
 }
 
-/// Where the voxels of an array lie: the first at the lower left, rows upwards.
+/// Returns the placement of an array's voxels: the first at the lower left, rows upwards.
 pub(super) fn placement(header: &Header, layout: &Layout) -> Placement {
     let steps = layout.axes.map(|axis| axis.and_then(|axis| step(header, axis)));
     let said: Vec<&Step> = steps.iter().flatten().collect();
     let Some(first) = said.first() else { return Placement::unknown() };
-    // The unit that most axes have, or the first axis.
+    // Most common unit: that of the first axis, or that of the other two if only they agree.
     let count = |unit: &Unit| said.iter().filter(|step| step.unit == *unit).count();
     let usual = if count(&first.unit) == 1 && said.len() == 3 && said[1].unit == said[2].unit {
         &said[1].unit
@@ -68,7 +68,7 @@ pub(super) fn placement(header: &Header, layout: &Layout) -> Placement {
     let one = if is_length { 1.0 } else { shortest };
     let spacing = [0, 1, 2].map(|axis| match &steps[axis] {
         Some(step) if step.unit == *usual => step.length / one,
-        // Nothing is said of how it compares: as wide as the others.
+        // An axis whose unit cannot be compared gets the shortest spacing of the others.
         _ => shortest / one,
     });
     let remarks = [0, 1, 2].map(|axis| {
@@ -88,7 +88,7 @@ pub(super) fn placement(header: &Header, layout: &Layout) -> Placement {
     if is_length { placed } else { placed.of_unknown_scale() }
 }
 
-/// One step along an axis of the file, counted from 1; `None` where nothing is said of it that can be.
+/// Returns the step along an axis of the file, counted from 1; `None` if the header gives no usable one.
 fn step(header: &Header, axis: usize) -> Option<Step> {
     let own = unit(header, axis);
     let mut along: Vec<(Unit, f64)> = Vec::new();
@@ -102,7 +102,7 @@ fn step(header: &Header, axis: usize) -> Option<Step> {
         parts.sum::<f64>().sqrt()
     };
     let length = length_in(&own.0);
-    // Where another coordinate alone changes along the axis, it is of that.
+    // If the axis' own coordinate is constant along it, the first other coordinate that varies supplies the step.
     let (unit, length) = match along.first() {
         Some((other, _)) if length == 0.0 => (other.clone(), length_in(other)),
         _ => (own.0, length),
@@ -110,10 +110,12 @@ fn step(header: &Header, axis: usize) -> Option<Step> {
     (length.is_finite() && length > 0.0).then_some(Step { length, unit })
 }
 
-/// Coordinates that are looked at: two on the sky, a spectrum, polarisation, and as many degenerate ones.
+/// Maximum number of world coordinates examined: two on the sky, a spectrum, polarisation, and as many degenerate
+/// ones.
 const MOST_COORDINATES: usize = 8;
 
-/// How a world coordinate changes along an axis of the array: `CDi_j`, or `CDELTi` times `PCi_j`, or `CDELTi` alone.
+/// Returns the derivative of a world coordinate along an array axis: `CDi_j`, or `CDELTi` times `PCi_j`, or `CDELTi`
+/// alone.
 fn rate(header: &Header, world: usize, axis: usize) -> Option<f64> {
     let has_matrix = (1..=MOST_COORDINATES)
         .any(|i| (1..=MOST_COORDINATES).any(|j| header.float(&format!("CD{i}_{j}")).is_some()));
@@ -125,7 +127,7 @@ fn rate(header: &Header, world: usize, axis: usize) -> Option<f64> {
     Some(delta * turned.unwrap_or(if world == axis { 1.0 } else { 0.0 }))
 }
 
-/// The unit of a world coordinate, and how many of degrees or millimetres one of the file's is.
+/// Returns the unit of a world coordinate, and the factor to degrees or millimetres.
 fn unit(header: &Header, world: usize) -> (Unit, f64) {
     let kind = header.text(&format!("CTYPE{world}")).to_uppercase();
     let said = header.text(&format!("CUNIT{world}"));
@@ -135,7 +137,8 @@ fn unit(header: &Header, world: usize) -> (Unit, f64) {
         let name = if said.is_empty() { &kind } else { said };
         return (Unit::Other(name.to_lowercase()), 1.0);
     }
-    // Older programs write them in capitals; of lengths that would be other ones.
+    // Older programs write angle units in capitals; units of length are case-sensitive, as another case means another
+    // unit.
     let angle = match said.to_lowercase().as_str() {
         "" if begins(&CELESTIAL) => Some(1.0),
         "deg" | "degree" | "degrees" => Some(1.0),

@@ -1,4 +1,4 @@
-//! Units of a FITS file (header and data units): which of them are pictures, and where their data begin.
+//! Header and data units (HDUs) of a FITS file: which of them are images, and where their data begin.
 
 use super::super::content::Content;
 use super::super::samples::Fault;
@@ -8,35 +8,35 @@ use super::layout::Layout;
 use crate::data::attempt::Attempt;
 use crate::data::plain;
 
-/// Most units of a file that are looked at: spectrographs and mosaics have some hundred.
+/// Maximum number of units examined in a file: spectrographs and mosaics have some hundred.
 const MOST_UNITS: usize = 1024;
 
-/// What a unit holds.
+/// Content type of a header and data unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    /// An array, or nothing.
+    /// Array of pixels, which may be empty.
     Image,
-    /// An array in compressed tiles, stored as a table.
+    /// Array in compressed tiles, stored as a table.
     CompressedImage,
     Table,
-    /// Visibilities of interferometers (`GROUPS`).
+    /// Random groups (`GROUPS`): visibilities of an interferometer.
     RandomGroups,
     Other,
 }
 
-/// An array that is a volume, or several.
+/// Image unit: an array that is a volume, or several.
 #[derive(Debug)]
 pub(super) struct Image {
-    /// Position of its unit in the file; the primary one is 0.
+    /// Index of the unit in the file; the primary unit is 0.
     number: usize,
     pub(super) header: Header,
-    /// Where its data begin, in bytes of the content.
+    /// Byte offset of the data in the uncompressed content.
     pub(super) data_start: u64,
     pub(super) layout: Layout,
 }
 
 impl Image {
-    /// As one of several to choose from: by its number, as other programs count units, or by its name.
+    /// Returns the image as an item to choose from, by its unit number as in other programs, or by its name.
     pub(super) fn offer(&self) -> Offer {
         let name = match (self.header.text("EXTNAME"), self.number) {
             ("", 0) => "PRIMARY".to_owned(),
@@ -46,21 +46,21 @@ impl Image {
     }
 }
 
-/// What a file holds.
+/// All units of a file, and the images among them.
 #[derive(Debug, Default)]
 pub(super) struct Units {
     pub(super) images: Vec<Image>,
-    /// Why an array is no volume, of the first that is none.
+    /// Reason why the first unusable array is no volume.
     refused: Option<LoadError>,
     kinds: Vec<Kind>,
 }
 
 impl Units {
-    /// Looks at all units of a file, from its beginning.
+    /// Scans all units of a file, from its beginning.
     ///
     /// # Errors
-    /// `BadInput` for a first header that cannot be and for broken gzip data, `Limit` for a header without an end. What else is
-    /// wrong behind the first unit ends the list.
+    /// `BadInput` for an invalid first header and for corrupt gzip data, `Limit` for a header without an end. Other
+    /// errors behind the first unit end the list.
     pub(super) fn read(
         attempt: Attempt<'_>,
         content: &mut Content,
@@ -72,7 +72,7 @@ impl Units {
         while units.kinds.len() < MOST_UNITS {
             let is_first = units.kinds.is_empty();
             let Some(header) = Header::read(attempt, content, is_first, control)? else { break };
-            // Whatever else follows the last unit is none.
+            // Trailing bytes behind the last unit, which are no extension.
             if !is_first && header.first() != "XTENSION" {
                 break;
             }
@@ -86,7 +86,7 @@ impl Units {
             at = data_start.saturating_add(data_bytes.div_ceil(BLOCK_BYTES).saturating_mul(BLOCK_BYTES));
             match content.go_to(at, control).map_err(Fault::of_stream) {
                 Ok(()) => {}
-                // Behind the end of the file, or of what can be said of a place in one, there are no more.
+                // The next unit would begin beyond the end of the file, or of the range of offsets: the list ends.
                 Err(Fault::Short { .. }) => break,
                 Err(Fault::Corrupt(_)) if !is_gzip => break,
                 Err(fault) => return Err(unread(attempt, fault)),
@@ -111,7 +111,7 @@ impl Units {
         }
     }
 
-    /// Why none of the units is a volume.
+    /// Makes the error that explains why no unit is a volume.
     pub(super) fn without_images(self, attempt: Attempt<'_>) -> LoadError {
         let has = |kind| self.kinds.contains(&kind);
         if let Some(error) = self.refused {
@@ -143,7 +143,7 @@ impl Units {
         }
     }
 
-    /// What the user is told of units that cannot be chosen.
+    /// Returns a remark for the user on units that cannot be chosen.
     pub(super) fn remark(&self) -> Option<&'static str> {
         let is_packed = self.kinds.contains(&Kind::CompressedImage);
         is_packed.then_some("pictures that are compressed in tiles are left out: funpack unpacks them")
@@ -161,7 +161,7 @@ fn kind_of(header: &Header) -> Kind {
     }
 }
 
-/// Bytes of a unit's data, without what fills the last block (section 4.4.1.2).
+/// Returns the size of a unit's data in bytes, without the fill of the last block (section 4.4.1.2).
 fn data_bytes(attempt: Attempt<'_>, header: &Header) -> Result<u64, LoadError> {
     let bits = header.required_int(attempt, "BITPIX")?.unsigned_abs();
     let mut axes = header.axes(attempt)?;

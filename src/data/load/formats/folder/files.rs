@@ -1,4 +1,4 @@
-//! The files of a folder, and of the folders within it.
+//! Listing of the files in a folder, and in the folders within it.
 
 use std::path::{Path, PathBuf};
 
@@ -6,17 +6,17 @@ use crate::data::attempt::Attempt;
 use crate::data::load::{LoadControl, LoadError};
 use crate::data::natural;
 
-/// Most files that are looked at: eight times the slices of the longest scans.
+/// Maximum number of files: eight times the slices of the longest scans.
 const MOST_FILES: usize = 1 << 16;
 
-/// Most entries of folders within a folder that are looked at, folders included: some exports have one for each slice.
+/// Maximum number of entries in nested folders, folders included: some exports have a folder for each slice.
 const MOST_ENTRIES: usize = 2 * MOST_FILES;
 
-/// How deep folders within each other are looked through: disks have patients, studies, series and parts of these.
+/// Maximum nesting depth of folders: media have patients, studies, series and parts of these.
 const MOST_DEPTH: usize = 12;
 
-/// The regular files of a folder, also behind links, in natural order: `slice 9` before `slice 10`. Hidden ones are not
-/// meant.
+/// Lists the regular files of a folder, following links, in natural order: `slice 9` before `slice 10`. Hidden files
+/// are left out.
 ///
 /// # Errors
 /// `Io` where the folder cannot be read, `Limit` where it has more files than any volume has slices.
@@ -42,19 +42,19 @@ pub(super) fn files_in(attempt: Attempt<'_>, control: &LoadControl) -> Result<Ve
     Ok(files)
 }
 
-/// The files of the folders within a folder.
+/// Files in the folders within a folder.
 #[derive(Debug, Default)]
 pub(super) struct Nested {
-    /// Folder after folder, in natural order.
+    /// Paths of the files, folder by folder, in natural order.
     pub(super) files: Vec<PathBuf>,
-    /// There are more, or deeper ones, than are looked at.
+    /// True if the limits on number or depth left files out.
     is_cut: bool,
-    /// Folders that cannot be read.
+    /// Number of folders that could not be read.
     unreadable: usize,
 }
 
 impl Nested {
-    /// What users should know of what was not looked at.
+    /// Remarks for the user on files that were left out.
     pub(super) fn remarks(&self) -> Vec<String> {
         let cut = self.is_cut.then(|| {
             format!(
@@ -68,15 +68,15 @@ impl Nested {
     }
 }
 
-/// The regular files of all folders within a folder, as far as it is bounded in number and depth; hidden ones are not
-/// meant. Links to folders are not followed: they lead anywhere, also back.
+/// Lists the regular files of all folders within a folder, within the limits on number and depth; hidden ones are
+/// left out. Links to folders are not followed: they may form cycles.
 ///
 /// # Errors
-/// `Cancelled` alone: what cannot be read is counted.
+/// `Cancelled` only: unreadable folders are counted.
 pub(super) fn files_within(path: &Path, control: &LoadControl) -> Result<Nested, LoadError> {
     let mut nested = Nested::default();
     let mut entries_left = MOST_ENTRIES;
-    // The next folder is the last.
+    // Stack of folders to visit.
     let mut open = vec![(path.to_owned(), 0)];
     while let Some((folder, depth)) = open.pop() {
         control.check()?;
@@ -116,7 +116,7 @@ pub(super) fn files_within(path: &Path, control: &LoadControl) -> Result<Nested,
     Ok(nested)
 }
 
-/// Puts paths of one folder in natural order.
+/// Sorts the paths of one folder in natural order.
 fn sort(paths: &mut [PathBuf]) {
     paths.sort_by_cached_key(|path| natural(&path.file_name().unwrap_or_default().to_string_lossy()));
 }

@@ -1,5 +1,5 @@
-//! A folder that is opened as a whole: the slices of one volume, a file each. Those of DICOM may lie in folders within
-//! it, as disks and exports of archives have them.
+//! Folders that are opened as a whole: slices of one volume, one file each. DICOM slices may lie in nested folders,
+//! as on media and in archive exports.
 
 mod files;
 
@@ -14,10 +14,10 @@ use crate::data::Volume;
 use crate::data::attempt::Attempt;
 use files::{Nested, files_in, files_within};
 
-/// Endings of files that are pictures for themselves.
+/// Extensions of pictures that are volumes of their own.
 const PICTURES: [&str; 6] = ["png", "jpg", "jpeg", "bmp", "tif", "tiff"];
 
-/// Loads the volume whose slices lie in a folder; of the files in it only those that are meant, where that is said.
+/// Loads the volume whose slices lie in a folder, restricted to [`LoadOptions::among`] where it is given.
 pub(in crate::data::load) fn load(
     path: &Path,
     options: &LoadOptions,
@@ -39,7 +39,7 @@ pub(in crate::data::load) fn load(
     if is_about_pictures(&files, &nested, control)? {
         nested = Nested::default();
     }
-    // Each kind of slices looks for its own, the surest marks first.
+    // Each reader selects its own files, the one with the most specific signature first.
     let all = [files.as_slice(), nested.files.as_slice()].concat();
     if let Some(volume) = dicom::load_folder(path, &all, nested.remarks(), options, control)? {
         return Ok(volume);
@@ -55,7 +55,7 @@ pub(in crate::data::load) fn load(
     ))
 }
 
-/// Whether a folder is one of pictures, beside which a few DICOM files in folders within do not count.
+/// Returns true if a folder mainly contains pictures, so that a few DICOM files in nested folders are ignored.
 fn is_about_pictures(files: &[PathBuf], nested: &Nested, control: &LoadControl) -> Result<bool, LoadError> {
     let is_picture = |path: &&PathBuf| {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());

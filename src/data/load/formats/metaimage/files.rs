@@ -1,22 +1,22 @@
-//! In which files the voxels are.
+//! Data files of a `MetaImage`: the header's own file, one named file, a list, or a numbered pattern.
 
 use super::super::LoadError;
 use super::header::{DATA_FILE, Header};
 use super::layout::Grid;
 use crate::data::attempt::{Attempt, quoted};
 
-/// Most files of a volume: eight times the slices of the longest scans.
+/// Maximum number of files of a volume: eight times the slices of the longest scans.
 const MOST_FILES: u64 = 1 << 16;
 
-/// The longest number of a slice in a name; a pattern that asks for more is none.
+/// Maximum width of a number in a file name; a pattern that asks for more is treated as a plain name.
 const MOST_DIGITS: usize = 20;
 
-/// The files, in the order of their voxels; each has as many.
+/// Data files in the order of their voxels; each holds an equal share.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Files {
-    /// Behind the header.
+    /// Data behind the header, in the same file.
     Local,
-    /// Beside it, by their names.
+    /// Data files beside the header, by name.
     Named(Vec<String>),
 }
 
@@ -46,7 +46,7 @@ impl Files {
                 let numbers: Option<Vec<i64>> = said.iter().map(|word| word.parse().ok()).collect();
                 match (numbers, number_at(pattern)) {
                     (Some(numbers), Some(_)) => numbered(attempt, pattern, &numbers, grid),
-                    // A name with spaces and a sign of percent in it.
+                    // A name that contains spaces and a percent sign.
                     _ => Ok(Self::Named(vec![text.to_owned()])),
                 }
             }
@@ -55,7 +55,7 @@ impl Files {
     }
 }
 
-/// How many files there are when each has the first dimensions: as many as the list says, or all but the last.
+/// Returns the number of files if each holds the first dimensions: as many as the list states, or all but the last.
 fn files_of(attempt: Attempt<'_>, said: Option<&str>, grid: &Grid) -> Result<u64, LoadError> {
     let count = grid.sizes.len();
     let dimensions = said.map(|word| word.trim_end_matches(['D', 'd']).parse::<usize>());
@@ -82,7 +82,7 @@ fn too_many(attempt: Attempt<'_>, files: u64) -> LoadError {
     )
 }
 
-/// The files of a pattern with the first number, the last one and the step, of which all can be missing.
+/// Expands a pattern with first number, last number and step, each of which may be missing.
 fn numbered(attempt: Attempt<'_>, pattern: &str, numbers: &[i64], grid: &Grid) -> Result<Files, LoadError> {
     let needed = grid.sizes.last().copied().unwrap_or(1);
     if needed > MOST_FILES {
@@ -111,7 +111,8 @@ fn numbered(attempt: Attempt<'_>, pattern: &str, numbers: &[i64], grid: &Grid) -
     })
 }
 
-/// Where the number stands in a pattern with one `%d`, and how: its bytes, how wide it is, and whether zeros fill it.
+/// Finds the number in a pattern with exactly one `%d`: its byte range, its width, and true if it is padded with
+/// zeros.
 fn number_at(pattern: &str) -> Option<(std::ops::Range<usize>, usize, bool)> {
     let start = pattern.find('%')?;
     let rest = pattern.get(start + 1..)?;
@@ -125,7 +126,7 @@ fn number_at(pattern: &str) -> Option<(std::ops::Range<usize>, usize, bool)> {
         .then(|| (start..start + digits + 2, length, width.starts_with('0')))
 }
 
-/// The name of a file by its number.
+/// Formats the name of the file with a given number.
 fn named(pattern: &str, number: i64) -> Option<String> {
     let (place, width, has_zeros) = number_at(pattern)?;
     let (before, after) = (pattern.get(..place.start)?, pattern.get(place.end..)?);

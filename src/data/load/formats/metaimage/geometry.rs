@@ -1,4 +1,4 @@
-//! Where voxels lie.
+//! Placement of `MetaImage` voxels: spacing, matrix or orientation letters, and offset.
 
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -8,18 +8,18 @@ use super::header::Header;
 use super::layout::Grid;
 use crate::data::attempt::Attempt;
 
-/// The place of the voxels of a grid. A matrix says which way a body lies, or three letters do.
+/// Returns the placement of a grid's voxels. A matrix gives the anatomical orientation, or else three letters do.
 pub(super) fn placement(attempt: Attempt<'_>, header: &Header, grid: &Grid) -> Result<Placement, LoadError> {
     let count = grid.sizes.len();
     let spacing = header.numbers(attempt, &["ElementSpacing", "ElementSize"], count)?;
     let origin = header.numbers(attempt, &["Offset", "Position", "Origin"], count)?;
     let matrix = header.numbers(attempt, &["TransformMatrix", "Rotation", "Orientation"], count * count)?;
-    // MetaIO's words for what it does not know.
+    // MetaIO's values for "unknown".
     let is_scale_known = header.get("DistanceUnits") != Some("?");
     let is_of_a_body = header.get("AnatomicalOrientation") != Some("???");
     let mm = header.get("DistanceUnits").and_then(mm_of).unwrap_or(1.0);
 
-    // Without distances the file may still say how its axes lie.
+    // Without spacings the file may still give the directions of its axes.
     let is_scale_known = is_scale_known && spacing.is_some();
     if spacing.is_none() && matrix.is_none() {
         return Ok(Placement::unknown());
@@ -28,7 +28,7 @@ pub(super) fn placement(attempt: Attempt<'_>, header: &Header, grid: &Grid) -> R
     let length = |axis: usize| spacing.get(axis).or(spacing.get(1)).map_or(1.0, |length| length * mm);
     let mut spaced = Placement::spaced([length(0), length(1), length(2)]);
     spaced.is_scale_known = is_scale_known;
-    // A picture lies in no body.
+    // A two-dimensional image has no anatomical orientation.
     let directions = if count < 3 { None } else { matrix.map(|matrix| rows(&matrix, count)) };
     let named = || header.get("AnatomicalOrientation").filter(|_| count > 2).and_then(directions_of);
     let Some(directions) = directions.or_else(named) else {
@@ -40,7 +40,7 @@ pub(super) fn placement(attempt: Attempt<'_>, header: &Header, grid: &Grid) -> R
             spaced.remarked(Some("the file's axes are unusable: they are taken for those of the grid"))
         );
     }
-    // What could not be a distance is mended already.
+    // Uses the spacing after unusable distances were replaced.
     let matrix3 = directions * spaced.world_from_index.matrix3;
     let mut placed = Placement::lps(DAffine3 { matrix3, translation: origin });
     placed.remarks.extend(spaced.remarks);
@@ -49,7 +49,7 @@ pub(super) fn placement(attempt: Attempt<'_>, header: &Header, grid: &Grid) -> R
     Ok(placed)
 }
 
-/// Millimetres of a unit of lengths, where it is known.
+/// Returns millimetres per unit of length; `None` for an unknown unit.
 fn mm_of(unit: &str) -> Option<f64> {
     match unit.to_lowercase().as_str() {
         "nm" => Some(1e-6),
@@ -61,14 +61,14 @@ fn mm_of(unit: &str) -> Option<f64> {
     }
 }
 
-/// The directions of the first three axes: a row of the header for each.
+/// Returns the directions of the first three axes, each a row of the header's matrix.
 fn rows(matrix: &[f64], count: usize) -> DMat3 {
     let row = |axis: usize| DVec3::from_array(std::array::from_fn(|at| matrix[axis * count + at]));
     DMat3::from_cols(row(0), row(1), row(2))
 }
 
-/// The directions of axes by the sides that they come from, as in `RAI`; `None` where letters are none, or not of three
-/// different axes.
+/// Parses axis directions from the sides that they come from, as in `RAI`; `None` for other letters, or if two axes
+/// are parallel.
 fn directions_of(letters: &str) -> Option<DMat3> {
     let axis = |letter: char| match letter {
         'R' => Some(DVec3::X),

@@ -1,28 +1,28 @@
-//! How many voxels there are, and how they are stored.
+//! Grid and voxel storage of a `MetaImage`: dimensions, number type, byte order, compression.
 
 use super::super::number::{Number, Part, Stored};
 use super::super::{Choice, Endian, LoadError};
 use super::header::Header;
 use crate::data::attempt::{Attempt, quoted};
 
-/// How stored numbers become values.
+/// Fields with the slope and intercept from stored numbers to values.
 pub(super) const SLOPE: &str = "ElementToIntensityFunctionSlope";
 pub(super) const INTERCEPT: &str = "ElementToIntensityFunctionOffset";
 
-/// Most volumes of a file that are told apart: longer series than any scanner makes.
+/// Maximum number of selectable volumes in a file: longer than any scanner's series.
 const MOST_FRAMES: u64 = 1 << 16;
 
-/// Most numbers of a voxel: those of real ones are three, or the coefficients of a model.
+/// Maximum number of components of a voxel: real files have three, or the coefficients of a model.
 const MOST_COMPONENTS: usize = 1 << 10;
 
-/// The grid.
+/// Grid of voxels and number of volumes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Grid {
-    /// As many numbers as there are dimensions: 2 to 4.
+    /// Lengths of all 2 to 4 dimensions.
     pub(super) sizes: Vec<u64>,
-    /// Voxels along x, y, z.
+    /// Number of voxels along x, y, z.
     pub(super) dims: [u64; 3],
-    /// Length of the fourth dimension.
+    /// Length of the fourth dimension: number of volumes.
     pub(super) frames: usize,
 }
 
@@ -63,19 +63,19 @@ impl Grid {
         }
     }
 
-    /// Voxels of a volume, as far as a number can say.
+    /// Returns the number of voxels of a volume, saturating.
     pub(super) fn voxels(&self) -> u64 {
         self.dims.iter().fold(1, |product, &n| product.saturating_mul(n))
     }
 }
 
-/// How the voxels are stored.
+/// Storage of the voxels: number type, encoding and header size.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Storage {
     pub(super) stored: Stored,
     pub(super) is_compressed: bool,
     pub(super) is_text: bool,
-    /// Bytes before the voxels of each file; `None` where these are the last bytes.
+    /// Bytes to skip before the voxels of each file; `None` if the voxels are the last bytes (`HeaderSize = -1`).
     pub(super) header_bytes: Option<u64>,
 }
 
@@ -100,12 +100,12 @@ impl Storage {
                 "correct the header",
             ));
         };
-        // Nothing says what is a colour, but who writes three or four bytes means one.
+        // The format has no flag for colour, but three or four bytes per voxel are nearly always one.
         let is_color = number == Number::U8 && matches!(components, 3 | 4);
         let part = Part::asked(attempt, choice.component_among(components, is_color), components, is_color)?;
         let is_text = header.flag(&["BinaryData"]) == Some(false);
         let is_big = header.flag(&["BinaryDataByteOrderMSB", "ElementByteOrderMSB"]) == Some(true);
-        // Numbers in text have no byte order: their bytes are made in ours.
+        // Numbers in text have no byte order: the parser emits little-endian bytes.
         let endian = if is_big && !is_text { Endian::Big } else { Endian::Little };
         let is_compressed = header.flag(&["CompressedData"]) == Some(true);
         let text = header.get("HeaderSize").unwrap_or("0");
@@ -132,7 +132,7 @@ impl Storage {
     }
 }
 
-/// The number type of `ElementType`. A `LONG` has four bytes, whatever machine wrote it.
+/// Maps `ElementType` to a number type. A `LONG` has four bytes, whatever machine wrote it.
 fn number_of(text: &str) -> Option<Number> {
     let name = text.strip_prefix("MET_")?;
     Some(match name.strip_suffix("_ARRAY").unwrap_or(name) {

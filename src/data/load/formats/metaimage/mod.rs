@@ -1,7 +1,7 @@
-//! `MetaImage`: a text header, and the voxels behind it, in a second file or in a file for each slice.
+//! `MetaImage`: a text header, and the voxels behind it, in a second file or in one file per slice.
 //!
-//! After the definition at <https://itk.org/Wiki/MetaIO/Documentation>, and what `MetaIO` does where that is silent.
-//! World space is left-posterior-superior millimetres.
+//! After the definition at <https://itk.org/Wiki/MetaIO/Documentation>, and the behaviour of `MetaIO` where that is
+//! silent. World space is left-posterior-superior millimetres.
 
 mod files;
 mod geometry;
@@ -35,7 +35,7 @@ pub(super) const READER: Reader = Reader {
     load,
 };
 
-/// Loads a `MetaImage` file.
+/// Loads a `MetaImage` file, with its data files.
 fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     let Source { path, mut input, options, control, .. } = source;
     let attempt = Attempt { what: "read the MetaImage volume", path };

@@ -1,4 +1,4 @@
-//! The bytes of a volume's voxels, out of one file or many, one open at a time.
+//! Stream of a volume's voxel bytes, out of one file or many, of which one is open at a time.
 
 use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
@@ -16,43 +16,43 @@ use super::header::DATA_FILE;
 use super::layout::{Grid, Storage};
 use crate::data::attempt::{Attempt, quoted};
 
-/// What is being done with a file of voxels.
+/// Action that error messages name for a data file.
 const WHAT: &str = "read the MetaImage volume's data file";
 
-/// What a header says of its data.
+/// Header data that locate the voxels: grid, storage, files, offset.
 #[derive(Clone, Copy)]
 pub(super) struct Described<'a> {
     pub(super) grid: &'a Grid,
     pub(super) storage: &'a Storage,
     pub(super) files: &'a Files,
-    /// Where the header ends.
+    /// Byte offset of the end of the header.
     pub(super) data_start: u64,
 }
 
-/// Reads a volume's voxels as if they were in one file.
+/// Reader that concatenates the voxels of all data files.
 pub(super) struct Pieces {
     storage: Storage,
-    /// Bytes of voxels in each file, as they are when neither compressed nor text.
+    /// Size of the voxels in each file, in bytes, before compression or conversion to text.
     piece_bytes: u64,
-    /// Files that have not been opened.
+    /// Data files that have not been opened yet.
     rest: vec::IntoIter<PathBuf>,
     open: Option<Piece>,
-    /// Why a file could not be used.
+    /// Reason why a data file could not be used.
     failed: Option<LoadError>,
 }
 
-/// An open file of voxels.
+/// Data file that is open for reading.
 struct Piece {
     path: PathBuf,
-    /// That it stays as it was; none for the header's own file, which somebody else watches.
+    /// Detects changes of the file while it is read; `None` for the header's own file, which the caller watches.
     witness: Option<Witness>,
     reader: Box<dyn Read>,
-    /// Bytes of voxels that are left in it.
+    /// Bytes of voxels that remain to be read from the file.
     left: u64,
 }
 
 impl Pieces {
-    /// Finds the files of a time step and goes to where its voxels begin.
+    /// Finds the data files of a time step, and skips to the first of its voxels.
     pub(super) fn of(
         attempt: Attempt<'_>,
         input: Input,
@@ -101,7 +101,7 @@ impl Pieces {
                         ));
                     }
                     let of_data = Attempt { what: WHAT, path: &path };
-                    // All of them are looked at before there is memory for any.
+                    // All files are checked before memory for any of them is allocated.
                     pieces.check_length(of_data, Input::open(of_data)?.len, storage.header_bytes)?;
                     paths.push(path);
                 }
@@ -126,13 +126,13 @@ impl Pieces {
         }
     }
 
-    /// Checks that a file of `len` bytes can hold the voxels.
+    /// Checks that a file of `len` bytes can hold its share of the voxels.
     fn check_length(&self, attempt: Attempt<'_>, len: u64, begin: Option<u64>) -> Result<(), LoadError> {
         let found = len.saturating_sub(begin.unwrap_or(0));
         let expected = match self.storage {
-            // Nothing shrinks to nothing.
+            // Compressed data take at least one byte.
             Storage { is_compressed: true, .. } => 1,
-            // A digit each and a space between.
+            // Minimum size of text: a digit per number, and a space between two.
             Storage { is_text: true, stored, .. } => {
                 (self.piece_bytes / stored.number.bytes() as u64) * 2 - 1
             }
@@ -151,7 +151,7 @@ impl Pieces {
         Ok(())
     }
 
-    /// Opens what lies behind `begin`, or at the end.
+    /// Opens a data file at offset `begin`; `None` means that the voxels are its last bytes.
     fn piece(
         &self,
         attempt: Attempt<'_>,
@@ -168,7 +168,7 @@ impl Pieces {
             source.by_ref().take(3).read_to_end(&mut magic).map_err(|error| attempt.io(error))?;
             let is_gzip = is_gzip(&magic);
             let source = BufReader::new(io::Cursor::new(magic).chain(source));
-            // The definition says zlib; what reads it everywhere takes gzip as well.
+            // The definition says zlib; the decoders in common use accept gzip as well.
             reader =
                 if is_gzip { Box::new(GzipMembers::new(source)) } else { Box::new(ZlibDecoder::new(source)) };
         }
@@ -180,7 +180,7 @@ impl Pieces {
         Ok(Piece { path: attempt.path.to_owned(), witness, reader, left: self.piece_bytes })
     }
 
-    /// Opens the next file.
+    /// Opens the next data file, with its witness.
     fn next(&self, path: &Path) -> Result<Piece, LoadError> {
         let attempt = Attempt { what: WHAT, path };
         let input = Input::open(attempt)?;
@@ -188,20 +188,20 @@ impl Pieces {
         self.piece(attempt, input, self.storage.header_bytes, Some(witness))
     }
 
-    /// Makes a decoder look at the checksum behind the last voxel, and sees to it that the last file has not changed.
+    /// Reads on to the checksum behind the last voxel, and verifies that the last file has not changed.
     pub(super) fn finish(&mut self, control: &LoadControl) -> Result<(), Fault> {
         fill(self, &mut [0], control).map(drop).map_err(Fault::of_stream)
     }
 
-    /// Why a file could not be used, if that is what has stopped the reading.
+    /// Returns the error if an unusable data file ended the reading.
     pub(super) fn failure(&mut self) -> Option<LoadError> {
         self.failed.take()
     }
 
-    /// Ends a file whose voxels have been read.
+    /// Closes a data file whose voxels have been read.
     fn close(&self, mut piece: Piece) -> io::Result<Result<(), LoadError>> {
         if self.storage.is_compressed {
-            // The checksum comes after the last byte.
+            // The decoder verifies the checksum, which follows the last byte.
             let _more = piece.reader.read(&mut [0])?;
         }
         let attempt = Attempt { what: WHAT, path: &piece.path };
@@ -227,7 +227,7 @@ impl Pieces {
             if let Ok(0) = count
                 && most > 0
             {
-                // What is missing here must not come from the next file.
+                // Missing bytes must not be taken from the next file.
                 self.rest = Vec::new().into_iter();
                 return Ok(0);
             }
@@ -237,7 +237,7 @@ impl Pieces {
     }
 }
 
-/// Why reading stops.
+/// Reason to stop reading: an I/O error, or an unusable file.
 enum Stop {
     Io(io::Error),
     Failed(LoadError),

@@ -7,53 +7,55 @@ use super::super::number::Number;
 use super::super::placement::Placement;
 use crate::data::attempt::Attempt;
 
-/// Bytes before the voxels: 90 that say something, the rest is kept free (`UNUSED_SPACE_SIZE` of `mri.h`).
+/// Offset of the voxels in bytes: 90 bytes of fields, the rest reserved (`UNUSED_SPACE_SIZE` of `mri.h`).
 pub(super) const HEADER_BYTES: usize = 284;
 
-/// Version of the format; there has been but one.
+/// Version of the format; only version 1 exists.
 const VERSION: u8 = 1;
 
-/// Intent of numbers that are labels; newer programs put the intent above the version (`MGZ_INTENT_LABEL`).
+/// Intent code of labels; newer programs store the intent in the byte above the version (`MGZ_INTENT_LABEL`).
 const LABEL_INTENT: u8 = 1;
 
-/// Intents above which a file without a mark is not believed to be one of these: fewer than ten are in use.
+/// Maximum plausible intent code for detection without magic bytes: fewer than ten are in use.
 const HIGHEST_INTENT: i32 = 15;
 
-/// Voxels along an axis above which a file without a mark is not believed to be one of these.
+/// Maximum plausible number of voxels along an axis for detection without magic bytes.
 const MOST_ALONG: i32 = 1 << 24;
 
-/// Axes where the header gives none: slices from behind to the front, rows from the head down (`mghRead` of `mriio.cpp`).
+/// Default axes if the header gives none: coronal slices from back to front, rows from superior to inferior
+/// (`mghRead` of `mriio.cpp`).
 const CORONAL: DMat3 =
     DMat3::from_cols(DVec3::new(-1.0, 0.0, 0.0), DVec3::new(0.0, 0.0, -1.0), DVec3::new(0.0, 1.0, 0.0));
 
 const HELP: &str = "copy the file again, or write it again with mri_convert";
 
-/// What a header says.
+/// Parsed header of an MGH file.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Header {
     /// Voxels along x, y, z.
     pub(super) dims: [u64; 3],
-    /// Volumes behind each other.
+    /// Number of consecutive volumes (time steps).
     pub(super) frames: u64,
     pub(super) number: Number,
-    /// Whether the file says that its numbers are labels.
+    /// True if the file's intent code marks its numbers as labels.
     pub(super) are_labels: bool,
-    /// Where the voxels lie, unless `goodRASFlag` says that nobody knows.
+    /// Position of the voxels; `None` if `goodRASFlag` is 0, that is, unknown.
     place: Option<Place>,
 }
 
-/// Place of the voxels.
+/// Spacing, axis directions and centre of the grid.
 #[derive(Debug, Clone, PartialEq)]
 struct Place {
-    /// Distances between voxel centres in millimetres.
+    /// Distances between voxel centres, in millimetres.
     spacing_mm: DVec3,
-    /// Directions of the three axes, right-anterior-superior.
+    /// Unit directions of the three axes, right-anterior-superior.
     directions: DMat3,
-    /// Place of index `dims / 2` (`c_ras`), in right-anterior-superior millimetres.
+    /// Position of index `dims / 2` (`c_ras`), in right-anterior-superior millimetres.
     center: DVec3,
 }
 
-/// Whether a file that begins like this is one. The format has no mark: every field must be what it can be.
+/// True if these bytes begin an MGH file. The format has no magic bytes, so every field is checked for plausible
+/// values.
 pub(super) fn is_mgh(bytes: &[u8]) -> bool {
     let fields = Fields(bytes);
     let is_version =
@@ -71,10 +73,10 @@ pub(super) fn is_mgh(bytes: &[u8]) -> bool {
 }
 
 impl Header {
-    /// The header at the beginning of a file.
+    /// Parses the header at the beginning of a file.
     ///
     /// # Errors
-    /// `BadInput` where it is cut off, of another version, or says what cannot be.
+    /// `BadInput` if it is truncated, of another version, or contains invalid values.
     pub(super) fn parse(attempt: Attempt<'_>, bytes: &[u8]) -> Result<Self, LoadError> {
         let fields = Fields(bytes);
         if bytes.len() < HEADER_BYTES {
@@ -101,7 +103,7 @@ impl Header {
         Ok(Self { dims, frames, number, are_labels: intent == LABEL_INTENT, place })
     }
 
-    /// Where the voxels lie.
+    /// Returns the placement of the voxels in the world.
     pub(super) fn placement(&self) -> Placement {
         let half = DVec3::from(self.dims.map(|n| n as f64)) / 2.0;
         let centred =
@@ -118,7 +120,7 @@ impl Header {
     }
 }
 
-/// The number type that a code stands for (`MRI_UCHAR` … of `mri.h`), or why it is not read.
+/// Maps a type code (`MRI_UCHAR` … of `mri.h`) to a number type, or to the reason why it is not supported.
 fn number_of(code: i32) -> Result<Number, String> {
     let why = match code {
         0 => return Ok(Number::U8),
@@ -136,13 +138,13 @@ fn number_of(code: i32) -> Result<Number, String> {
     Err(why.to_owned())
 }
 
-/// Three values, where all are there.
+/// Returns the three values if all of them are present.
 fn all<T: Copy>(values: [Option<T>; 3]) -> Option<[T; 3]> {
     let [x, y, z] = values;
     Some([x?, y?, z?])
 }
 
-/// Big-endian numbers at places; 0 behind the end.
+/// Reader of big-endian numbers at byte offsets; reads zeros beyond the end.
 struct Fields<'a>(&'a [u8]);
 
 impl Fields<'_> {

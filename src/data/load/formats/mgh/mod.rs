@@ -1,8 +1,9 @@
-//! MGH and MGZ, the volumes of `FreeSurfer`: a header of 284 bytes, the voxels, and what tags say behind them; as a whole
-//! often compressed with gzip.
+//! MGH and MGZ, the volumes of `FreeSurfer`: a header of 284 bytes, the voxels, and tags behind them; often gzipped
+//! as a whole.
 //!
-//! After <https://surfer.nmr.mgh.harvard.edu/fswiki/FsTutorial/MghFormat> and `mghRead` of `FreeSurfer`'s `mriio.cpp`. World
-//! space is right-anterior-superior millimetres. Where the volumes of one file differ is not said: they are time steps.
+//! After <https://surfer.nmr.mgh.harvard.edu/fswiki/FsTutorial/MghFormat> and `mghRead` of `FreeSurfer`'s
+//! `mriio.cpp`. World space is right-anterior-superior millimetres. Several volumes of one file count as time steps,
+//! as the format does not say how they differ.
 
 mod color_table;
 mod header;
@@ -31,7 +32,7 @@ pub(super) const READER: Reader =
 
 const HELP: &str = "check the header, or copy the file again";
 
-/// Loads an MGH file.
+/// Loads an MGH or MGZ file.
 fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     let attempt = Attempt { what: "read the MGH volume", path: source.path };
     let header = Header::parse(attempt, source.start.bytes())?;
@@ -73,7 +74,8 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     Parts { name, extent, placement: header.placement(), voxels, hints }.volume(attempt)
 }
 
-/// The labels that are said behind all voxels. A file may end there, or with the voxels that were wanted.
+/// Reads the labels from the tags behind all voxels. A file may end there, or right after the voxels that were
+/// requested.
 fn labels_behind(content: &mut Content, end: u64, control: &LoadControl) -> Result<Labels, Fault> {
     match content.go_to(end, control) {
         Ok(()) => {}

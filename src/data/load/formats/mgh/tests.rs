@@ -1,4 +1,4 @@
-//! MGH files made by hand: every type, places, frames, tables of labels, and headers that lie.
+//! Tests of MGH files built in memory: every type, placement, frames, colour tables, and invalid headers.
 
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -7,20 +7,20 @@ use crate::data::load::tests::shared::{assert_refused, gzip, load_bytes};
 use crate::data::load::{Choice, LoadErrorKind};
 use crate::data::{DataKind, Label, Samples};
 
-/// A file that is put together field by field.
+/// Builder of an MGH file, field by field.
 #[derive(Clone)]
 struct MghFile {
     /// Version, width, height, depth, frames, type, degrees of freedom.
     ints: [i32; 7],
     is_placed: i16,
-    /// Distances, three axes, centre.
+    /// Spacings, three axis directions, centre.
     place: [f32; 15],
     data: Vec<u8>,
     footer: Vec<u8>,
 }
 
 impl MghFile {
-    /// 2 x 3 x 2 voxels of a type, 1 x 2 x 3 mm apart, along right, anterior and superior.
+    /// A file of 2 x 3 x 2 voxels of a type, 1 x 2 x 3 mm apart, along right, anterior and superior.
     fn new(code: i32, data: Vec<u8>) -> Self {
         let place = [1.0, 2.0, 3.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 10.0, 20.0, 30.0];
         Self { ints: [1, 2, 3, 2, 1, code, 0], is_placed: 1, place, data, footer: Vec::new() }
@@ -44,12 +44,12 @@ impl MghFile {
     }
 }
 
-/// The numbers from 0 to 11 as bytes.
+/// A file with the voxels 0 to 11 as bytes.
 fn twelve() -> MghFile {
     MghFile::new(0, (0..12).collect())
 }
 
-/// The tag of a table of labels: with the numbers of its entries, or of the older kind.
+/// Bytes of a colour table tag: with label numbers in its entries (version 2), or of the older version.
 fn color_table(has_numbers: bool) -> Vec<u8> {
     let int = |value: i32| value.to_be_bytes().to_vec();
     let text = |text: &str| [int(text.len() as i32 + 1), text.as_bytes().to_vec(), vec![0]].concat();
@@ -66,7 +66,7 @@ fn color_table(has_numbers: bool) -> Vec<u8> {
         entry(0, "Unknown", [0, 0, 0]),
         entry(if has_numbers { 17 } else { 1 }, "Left-Hippocampus", [220, 216, 20]),
     ];
-    // Five numbers of the acquisition, a command line, the older form of a transform, the table.
+    // Five acquisition parameters, a command line, the older transform tag, the table.
     let before = [
         vec![0; 20],
         int(3),
@@ -94,7 +94,7 @@ fn every_type_is_read() {
     ] {
         let made = MghFile::new(code, data);
         assert_eq!((made.loaded().samples(), made.loaded().dims()), (&expected, [2, 3, 2]), "type {code}");
-        // By its content, whatever it is called; compressed or not.
+        // Detected by content, whatever the file name; gzipped or not.
         for name in ["scan", "scan.mgz", "scan.bin"] {
             for bytes in [made.bytes(), gzip(&made.bytes())] {
                 let volume = load_bytes(name, &bytes, Choice::default()).unwrap();
@@ -108,14 +108,14 @@ fn every_type_is_read() {
 #[test]
 fn voxels_lie_where_the_header_says() {
     let volume = twelve().loaded();
-    // Index dims / 2 lies at c_ras.
+    // Index dims / 2 lies at `c_ras`.
     let expected = DAffine3 {
         matrix3: DMat3::from_diagonal(DVec3::new(1.0, 2.0, 3.0)),
         translation: DVec3::new(10.0, 20.0, 30.0) - DVec3::new(1.0, 3.0, 3.0),
     };
     assert_eq!(volume.world_from_index(), expected);
     assert!(volume.is_anatomical() && !volume.has_unknown_scale() && volume.remarks().is_empty());
-    // As FreeSurfer conforms them: to the left, down, to the front.
+    // Orientation of volumes conformed by FreeSurfer: left, inferior, anterior.
     let mut made = twelve();
     made.place[3..12].copy_from_slice(&[-1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0]);
     let conformed = made.loaded();
@@ -166,12 +166,12 @@ fn labels_have_the_names_of_the_table_behind_them() {
         made.loaded().hints().labels.get(1).map(|label| label.name.as_str()),
         Some("Left-Hippocampus")
     );
-    // The intent above the version says it, too.
+    // The intent code above the version marks labels, too.
     made.footer = Vec::new();
     let intended = made.clone().with_int(0, 0x101).loaded();
     assert_eq!((intended.hints().meaning, intended.hints().labels.len()), (Meaning::Labels, 0));
     assert_eq!(made.loaded().hints().meaning, Meaning::Unknown);
-    // A table behind measurements names nothing.
+    // A table behind real-valued measurements names nothing.
     let mut floats = MghFile::new(3, [0.5f32; 12].map(f32::to_be_bytes).concat());
     floats.footer = color_table(true);
     assert!(floats.loaded().hints().labels.is_empty());
@@ -186,7 +186,7 @@ fn what_follows_the_voxels_is_no_matter() {
         assert_eq!(*made.loaded().samples(), Samples::U8((0..12).collect()), "{cut} bytes");
     }
     for lie in [i32::MAX, -1, i32::MIN, 0] {
-        // Lengths and counts that cannot be: of a tag, of a name, of entries.
+        // Impossible lengths and counts: of a tag, of a name, of entries.
         for at in [24, 28, table.len() - 4, 48, 52, 56] {
             made.footer = table.clone();
             made.footer[at..at + 4].copy_from_slice(&lie.to_be_bytes());

@@ -1,4 +1,4 @@
-//! Where the voxels of an MRC file lie: in a cell of a crystal, or in a box that is called so.
+//! Placement of MRC voxels: from the unit cell of a crystal, or the box that takes its place.
 
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -6,15 +6,15 @@ use super::super::placement::Placement;
 use super::header::Header;
 use crate::data::attempt::is_usable_spacing;
 
-/// Lengths are in Å.
+/// Millimetres per Å, the unit of the file's lengths.
 const MM_PER_ANGSTROM: f64 = 1e-7;
 
-/// The place of the voxels, by cell, order of axes and origin.
+/// Returns the placement of the voxels from cell, axis order and origin.
 pub(super) fn placement(header: &Header) -> Placement {
     let (lengths, intervals) = (header.floats(11), header.ints(8));
     let steps: [f64; 3] = std::array::from_fn(|axis| lengths[axis] / f64::from(intervals[axis]));
     let is_usable = |step: &f64| is_usable_spacing(step * MM_PER_ANGSTROM);
-    // Where one is missing they are taken to be alike, as they nearly always are.
+    // An unusable step is taken to equal the others, as steps nearly always do.
     let usual = steps.into_iter().find(is_usable);
     let taken = steps.map(|step| if is_usable(&step) { step } else { usual.unwrap_or(1.0) });
     let unit = if usual.is_some() { MM_PER_ANGSTROM } else { 1.0 };
@@ -22,7 +22,7 @@ pub(super) fn placement(header: &Header) -> Placement {
     let cell = cell_axes(header.floats(14));
     let (order, is_order_bad) = order(header.ints(17));
     let columns = order.map(|axis| cell[axis] * taken[axis] * unit);
-    // Crystallographers say in steps where a map begins, microscopists in Å.
+    // Crystallography states where a map begins in grid steps (`NXSTART` …), microscopy in Å (`ORIGIN`).
     let starts = header.ints(5);
     let origin = match header.origin() {
         Some(origin) => DVec3::from(origin) * unit,
@@ -39,32 +39,32 @@ pub(super) fn placement(header: &Header) -> Placement {
     if usual.is_some() { placed } else { placed.of_unknown_scale() }
 }
 
-/// Which axes of the cell columns, rows and sections follow, and whether what was said of it cannot be.
+/// Returns the cell axes that columns, rows and sections follow, and true if the stated order is invalid.
 fn order(said: [i32; 3]) -> ([usize; 3], bool) {
     let mut sorted = said;
     sorted.sort_unstable();
     if sorted == [1, 2, 3] {
         (said.map(|axis| (axis - 1) as usize), false)
     } else {
-        // Nothing is said by zeros.
+        // Zeros mean that the order is not stated.
         ([0, 1, 2], said != [0; 3])
     }
 }
 
-/// The directions of the axes of a cell from the angles between them in degrees: the first along x, the second in the
-/// plane of x and y.
+/// Computes the unit directions of the cell axes from the angles between them, in degrees: the first along x, the
+/// second in the plane of x and y.
 fn cell_axes(angles: [f64; 3]) -> [DVec3; 3] {
     let right = [DVec3::X, DVec3::Y, DVec3::Z];
     if !angles.iter().all(|angle| (1.0..=179.0).contains(angle)) {
         return right;
     }
-    // Right angles exactly: their cosines are not quite zero.
+    // Exactly 0 for right angles, whose computed cosine is not quite zero.
     let cosine = |angle: f64| if angle == 90.0 { 0.0 } else { angle.to_radians().cos() };
     let [alpha, beta, gamma] = angles.map(cosine);
     let sine = (1.0 - gamma * gamma).sqrt();
     let y = (alpha - beta * gamma) / sine;
     let height = 1.0 - beta * beta - y * y;
-    // Three angles need not fit together.
+    // Three angles need not be geometrically possible.
     if height < 1e-6 {
         return right;
     }

@@ -1,7 +1,7 @@
-//! MRC and CCP4: densities of molecules, and pictures of electron microscopes. A header of 1024 bytes, and what programs
-//! add to it, before the voxels.
+//! MRC and CCP4: density maps of molecules, and images of electron microscopes. A header of 1024 bytes, and an
+//! optional extended header, precede the voxels.
 //!
-//! After the definition at <https://www.ccpem.ac.uk/mrc_format/mrc2014.php>, with what IMOD adds to it
+//! After the definition at <https://www.ccpem.ac.uk/mrc_format/mrc2014.php>, with IMOD's extensions
 //! (<https://bio3d.colorado.edu/imod/doc/mrc_format.txt>).
 
 mod cell;
@@ -25,14 +25,14 @@ pub(super) const READER: Reader = Reader {
     load,
 };
 
-/// The mark `MAP `, and where it is. Some programs end it with a zero.
+/// Checks the magic bytes `MAP ` at byte 208. Some programs end them with a zero.
 fn is_mrc(start: &Start) -> bool {
     start.has(b"MAP ", 208) || start.has(b"MAP\0", 208)
 }
 
 const HELP: &str = "copy or download the file again";
 
-/// Loads an MRC file.
+/// Loads an MRC or CCP4 file.
 fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
     let attempt = Attempt { what: "read the MRC volume", path: source.path };
     let header = Header::of(attempt, source.start.bytes())?;
@@ -66,7 +66,7 @@ fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
     let placement = cell::placement(&header).remarked(remark).remarked(stack);
     let mut hints = Hints::default();
     hints.modality = Modality::ElectronMicroscopy;
-    // Maps are of real numbers. Whole ones are what a detector has counted, mostly less where there is more.
+    // Maps hold real numbers. Integers are a detector's counts, which mostly fall where there is more material.
     if mode.is_map && !header.is_image_stack() {
         hints.meaning = Meaning::PositiveDensity;
     }
@@ -74,13 +74,13 @@ fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
     Parts { name: stem(source.path), extent, placement, voxels, hints }.volume(attempt)
 }
 
-/// How the voxels of a mode are stored.
+/// Storage of the voxels of a mode.
 struct Mode {
     number: Number,
     components: usize,
     is_color: bool,
     is_complex: bool,
-    /// Whether it is one of those in which maps of densities are written.
+    /// True for the modes in which density maps are written: 2 and 12.
     is_map: bool,
 }
 
@@ -95,7 +95,7 @@ fn mode_of(attempt: Attempt<'_>, header: &Header) -> Result<Mode, LoadError> {
         4 => Mode { components: 2, is_complex: true, ..plain(Number::F32) },
         6 => plain(Number::U16),
         12 => Mode { is_map: true, ..plain(Number::F16) },
-        // IMOD's colours.
+        // IMOD's mode for RGB colours.
         16 => Mode { components: 3, is_color: true, ..plain(Number::U8) },
         101 => {
             return Err(attempt.bad_input(

@@ -1,4 +1,4 @@
-//! MRC files made by hand: every mode and byte order, cells, stacks, and headers that lie.
+//! Tests of MRC files built in memory: every mode and byte order, cells, stacks, and invalid headers.
 
 use glam::DVec3;
 
@@ -7,7 +7,7 @@ use crate::data::Samples;
 use crate::data::load::tests::shared::{gzip, load_bytes};
 use crate::data::load::{Choice, LoadErrorKind};
 
-/// A header that is put together word by word.
+/// Builder of an MRC file, word by word.
 #[derive(Clone)]
 struct Made {
     words: Vec<[u8; 4]>,
@@ -16,7 +16,7 @@ struct Made {
 }
 
 impl Made {
-    /// 2 x 1 x 2 voxels of a mode, 2 Å apart.
+    /// A file of 2 x 1 x 2 voxels of a mode, 2 Å apart.
     fn new(mode: i32, is_big: bool, data: Vec<u8>) -> Self {
         let mut made = Self { words: vec![[0; 4]; 256], is_big, data };
         for (at, value) in
@@ -59,7 +59,7 @@ impl Made {
     }
 }
 
-/// Real numbers, little-endian.
+/// Bytes of real numbers, little-endian.
 fn floats(values: &[f32]) -> Vec<u8> {
     values.iter().flat_map(|value| value.to_le_bytes()).collect()
 }
@@ -94,7 +94,7 @@ fn every_mode_and_byte_order_is_read() {
             let hints = volume.hints();
             assert_eq!(hints.modality, Modality::ElectronMicroscopy);
             assert_eq!(hints.meaning == Meaning::PositiveDensity, matches!(mode, 2 | 12), "{mode}");
-            // Without a machine stamp the dimensions tell, and against a wrong one.
+            // Without a machine stamp, or with a wrong one, plausible dimensions decide.
             for stamp in [[0; 4], [0x44, 0x44, 0, 0], [0x11, 0x11, 0, 0]] {
                 assert_eq!(*made.clone().text(54, stamp).loaded().samples(), expected, "{stamp:?}");
             }
@@ -180,7 +180,7 @@ fn headers_may_be_longer_and_hold_words_and_stacks() {
     assert_eq!((offers.len(), offers[1].dims), (2, Some([2, 1, 1])));
     let second = Choice { frame: Some(1), ..Choice::default() };
     assert_eq!(*stack.loaded_with("a.mrc", second).unwrap().samples(), Samples::F32(vec![3.0, 4.0]));
-    // Old files have no mark: the ending tells.
+    // Old files have no magic bytes: the name's ending decides.
     let old = stack.clone().int(23, 0).int(10, 2).text(53, [0; 4]);
     assert!(old.loaded_with("a.rec", Choice::default()).is_ok());
 }

@@ -1,4 +1,5 @@
-//! Where voxels lie: by the matrix (`sform`), or the quaternion (`qform`), or the distances alone.
+//! Placement of `NIfTI` voxels: from the matrix (`sform`), else the quaternion (`qform`), else the spacings
+//! (`pixdim`) alone.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
@@ -6,10 +7,11 @@ use super::super::placement::Placement;
 use super::header::{Form, Header};
 use crate::data::attempt::is_usable_spacing;
 
-/// The place of the voxels of a grid.
+/// Returns the placement of a grid's voxels, in right-anterior-superior millimetres, with remarks on what the header
+/// leaves open.
 pub(super) fn placement(header: &Header, dims: [u64; 3]) -> Placement {
     let unit_mm = unit_mm(header);
-    // Programs that write a place and no unit mean millimetres.
+    // Programs that write a position but no unit mean millimetres.
     let mm = unit_mm.unwrap_or(1.0);
     let spacing = spacing(header, dims);
     let mut remarks = Vec::new();
@@ -30,14 +32,15 @@ pub(super) fn placement(header: &Header, dims: [u64; 3]) -> Placement {
     } else {
         "the header does not say which way a body lies: left and right are not known".to_owned()
     });
-    // What programs write that were told nothing.
+    // Values that programs write by default: no unit, and spacings of 0 or 1.
     let is_default = unit_mm.is_none() && spacing.iter().all(|&length| length == 0.0 || length == 1.0);
     let placed = if is_default { Placement::unknown() } else { Placement::spaced(spacing.map(|n| n * mm)) };
     remarks.extend(placed.remarks);
     Placement { remarks, ..placed }.said_in(mm)
 }
 
-/// Millimetres of the unit of lengths, where there is one (`NIFTI_UNITS_METER`, `_MM`, `_MICRON`).
+/// Millimetres per unit of length, if the header names a known one (`NIFTI_UNITS_METER`, `_MM`, `_MICRON`; Analyze:
+/// text).
 fn unit_mm(header: &Header) -> Option<f64> {
     match (header.units & 7, header.words[0].trim().to_lowercase().as_str()) {
         (1, _) | (_, "m") => Some(1e3),
@@ -48,7 +51,8 @@ fn unit_mm(header: &Header) -> Option<f64> {
     }
 }
 
-/// Distances between voxels; along an axis with one voxel alone, of which nothing is said, as along another.
+/// Returns the spacings of the three axes, unsigned; an axis of a single voxel without a usable spacing takes that of
+/// another axis.
 fn spacing(header: &Header, dims: [u64; 3]) -> [f64; 3] {
     let said = [1, 2, 3].map(|axis: usize| header.pixdim[axis].abs());
     let other = said.into_iter().find(|&length| is_usable_spacing(length));
@@ -58,19 +62,19 @@ fn spacing(header: &Header, dims: [u64; 3]) -> [f64; 3] {
     })
 }
 
-/// The affine of the matrix.
+/// Returns the affine of the matrix (`srow_x`, `srow_y`, `srow_z`).
 fn sform(header: &Header) -> DAffine3 {
     let [x, y, z] = header.srow;
     let column = |at: usize| DVec3::new(x[at], y[at], z[at]);
     DAffine3 { matrix3: DMat3::from_cols(column(0), column(1), column(2)), translation: column(3) }
 }
 
-/// The affine of the quaternion (`nifti1.h`, "method 2"): its first number follows from the other three, and the sign of
-/// `pixdim[0]` mirrors the third axis.
+/// Returns the affine of the quaternion (`nifti1.h`, "method 2"): its real part follows from the three stored
+/// numbers, and a negative `pixdim[0]` (`qfac`) mirrors the third axis.
 fn qform(header: &Header, spacing: [f64; 3]) -> DAffine3 {
     let vector = DVec3::from_array(header.quatern);
     let rest = 1.0 - vector.length_squared();
-    // Rounded numbers of half a turn can be longer than 1.
+    // Rounding can make the vector of a half turn longer than 1.
     let turn = if rest < 1e-7 {
         let DVec3 { x, y, z } = vector.normalize_or_zero();
         DQuat::from_xyzw(x, y, z, 0.0)
@@ -79,7 +83,8 @@ fn qform(header: &Header, spacing: [f64; 3]) -> DAffine3 {
     };
     let mirror = if header.pixdim[0] < 0.0 { -1.0 } else { 1.0 };
     let lengths = DVec3::from_array(spacing) * DVec3::new(1.0, 1.0, mirror);
-    // Not through a quaternion that is none: its matrix is then not finite, and refused.
+    // Composed from matrices, not by quaternion operations: an invalid quaternion then gives a matrix that is not
+    // finite, which is refused.
     let matrix3 = DMat3::from_quat(turn) * DMat3::from_diagonal(lengths);
     DAffine3 { matrix3, translation: DVec3::from_array(header.qoffset) }
 }

@@ -1,28 +1,28 @@
-//! The dimensions: three of space, then time and what else there is.
+//! `NIfTI` dimensions (`dim`): three of space, then time and up to three more.
 
 use super::super::LoadError;
 use super::header::Header;
 use crate::data::attempt::{Attempt, Offer};
 
-/// Most volumes of a file that are told apart: longer series than any scanner makes.
+/// Maximum number of selectable volumes in a file: longer than any scanner's series.
 const MOST_FRAMES: u64 = 1 << 16;
 
-/// Most components of a vector: those of real ones are three, or the coefficients of a model.
+/// Maximum number of components of a vector: real files have three, or the coefficients of a model.
 const MOST_COMPONENTS: u64 = 1 << 10;
 
-/// Intents whose fifth dimension are the components of vectors (`NIFTI_INTENT_DISPVECT`, `NIFTI_INTENT_VECTOR`).
+/// Intents that make the fifth dimension the components of vectors (`NIFTI_INTENT_DISPVECT`, `NIFTI_INTENT_VECTOR`).
 const VECTOR_INTENTS: [i32; 2] = [1006, 1007];
 
-/// What the dimensions mean.
+/// Meaning of the dimensions: grid size, number of volumes, and number of vector components.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Grid {
     /// Voxels along x, y, z.
     pub(super) dims: [u64; 3],
-    /// Volumes that can be chosen.
+    /// Number of volumes that the user can choose from.
     pub(super) frames: usize,
-    /// Numbers of a vector, each in a volume of its own; 1 where there are no vectors.
+    /// Components of a vector, each stored as a volume of its own; 1 if the file has no vectors.
     pub(super) components: usize,
-    /// The fourth to the seventh dimension, without the components.
+    /// Lengths of the fourth to seventh dimension, without the vector components (replaced by 1).
     others: [u64; 4],
 }
 
@@ -45,7 +45,7 @@ impl Grid {
                 break;
             }
             *length = match u64::try_from(said) {
-                // Some programs write no length where there is nothing along an axis.
+                // Some programs write 0 for the length of an unused axis.
                 Ok(0) if axis > 0 => 1,
                 Ok(said) => said,
                 Err(_negative) => {
@@ -71,13 +71,14 @@ impl Grid {
         Ok(Self { dims: [x, y, z], frames: frames as usize, components: components as usize, others })
     }
 
-    /// The volumes that can be chosen.
+    /// Returns the volumes that the user can choose from, with their names.
     pub(super) fn offers(&self, header: &Header) -> Vec<Offer> {
         let name = |frame| self.name(frame, header).unwrap_or_default();
         (0..self.frames).map(|frame| Offer::numbered(frame, &name(frame), self.dims)).collect()
     }
 
-    /// The time of a volume, where the file says it, or else its place along more than one dimension.
+    /// Returns a name for a volume: its time if the header gives a time unit, or its indices along several extra
+    /// dimensions.
     fn name(&self, frame: usize, header: &Header) -> Option<String> {
         let [steps, others @ ..] = self.others;
         if others != [1; 3] {
@@ -89,7 +90,7 @@ impl Grid {
             }
             return Some(place.join(", "));
         }
-        // `NIFTI_UNITS_SEC`, `_MSEC` and `_USEC`.
+        // Time units: `NIFTI_UNITS_SEC`, `_MSEC` and `_USEC`.
         let unit = match header.units & 0x38 {
             8 => "s",
             16 => "ms",
@@ -98,7 +99,7 @@ impl Grid {
         };
         let (step, first) = (header.pixdim[4], header.toffset);
         let time = (frame as f64).mul_add(step, if first.is_finite() { first } else { 0.0 });
-        // The numbers of NIfTI-1 are of 32 bits: what they are rounded by is not shown.
+        // NIfTI-1 stores 32-bit floats: rounding to 1e-3 hides their representation error.
         let time = (time * 1e3).round() / 1e3;
         (steps > 1 && step > 0.0 && time.is_finite()).then(|| format!("{time} {unit}"))
     }

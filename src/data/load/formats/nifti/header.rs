@@ -1,9 +1,9 @@
-//! The fields of the three headers, in one form.
+//! Header fields of Analyze 7.5, NIfTI-1 and NIfTI-2, parsed into one common struct.
 
 use super::super::{Endian, LoadError};
 use crate::data::attempt::Attempt;
 
-/// Which of the headers.
+/// Header format: Analyze 7.5, NIfTI-1 or NIfTI-2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Form {
     Analyze,
@@ -11,15 +11,16 @@ pub(super) enum Form {
     Nifti2,
 }
 
-/// Bytes of the headers of Analyze and NIfTI-1, and of NIfTI-2; they say it themselves in their first field.
+/// Sizes in bytes of the headers of Analyze and NIfTI-1, and of NIfTI-2; the first field of a header (`sizeof_hdr`)
+/// repeats it.
 const BYTES_1: usize = 348;
 const BYTES_2: usize = 540;
 
-/// What follows a header in the same file: four bytes that say whether extensions do.
+/// Size of the extender that follows a header in a single file: four bytes that tell if extensions follow.
 const EXTENDER_BYTES: u64 = 4;
 
 impl Form {
-    /// What the first bytes of a file are.
+    /// Detects the header format from the first bytes of a file; `None` if they are no header.
     pub(super) fn of(bytes: &[u8]) -> Option<Self> {
         let has = |at: usize, mark: &[u8]| bytes.get(at..).is_some_and(|rest| rest.starts_with(mark));
         if bytes.len() >= BYTES_2 && (has(4, b"n+2\0") || has(4, b"ni2\0")) {
@@ -34,7 +35,8 @@ impl Form {
         is_analyze(bytes).then_some(Self::Analyze)
     }
 
-    /// The byte order of a header: that in which its number of dimensions is one, or else its size is right.
+    /// Detects the byte order: the one in which the number of dimensions is 1 to 7 (NIfTI-2: in which `sizeof_hdr` is
+    /// right).
     fn endian(self, bytes: &[u8]) -> Option<Endian> {
         [Endian::Little, Endian::Big].into_iter().find(|&endian| {
             let fields = Fields { bytes, endian };
@@ -46,7 +48,8 @@ impl Form {
     }
 }
 
-/// Whether a header of Analyze begins here. It has no mark: several fields must be what they can be.
+/// True if an Analyze header begins here. The format has no magic bytes, so several fields are checked for plausible
+/// values.
 fn is_analyze(bytes: &[u8]) -> bool {
     [Endian::Little, Endian::Big].into_iter().any(|endian| {
         let fields = Fields { bytes, endian };
@@ -66,41 +69,41 @@ fn is_analyze(bytes: &[u8]) -> bool {
     })
 }
 
-/// What a header says.
+/// Parsed header of an Analyze, NIfTI-1 or NIfTI-2 file.
 #[derive(Debug, Clone)]
 pub(super) struct Header {
     pub(super) form: Form,
-    /// The voxels follow in the same file.
+    /// True if the voxels follow in the same file (magic `n+1` or `n+2`).
     pub(super) is_single: bool,
     pub(super) endian: Endian,
-    /// How many dimensions, then how long they are.
+    /// Number of dimensions, followed by the lengths of up to seven.
     pub(super) dim: [i64; 8],
-    /// The sign of the third axis, then the distances along all.
+    /// Handedness of the third axis (`qfac`), followed by the spacings along all axes.
     pub(super) pixdim: [f64; 8],
     pub(super) datatype: i16,
-    /// Where the voxels begin, in the file that they are in.
+    /// Byte offset of the first voxel in the file that holds the data.
     pub(super) data_start: u64,
     pub(super) slope: f64,
     pub(super) intercept: f64,
     pub(super) cal_min: f64,
     pub(super) cal_max: f64,
     pub(super) intent_code: i32,
-    /// Lengths in the lowest three bits, times in the next three.
+    /// Units: of lengths in the lowest three bits, of times in the next three (`xyzt_units`).
     pub(super) units: i32,
-    /// What Analyze calls the unit of lengths, and of values.
+    /// Units as text, in Analyze files alone: of lengths, and of values (`vox_units`, `cal_units`).
     pub(super) words: [String; 2],
     pub(super) qform_code: i32,
     pub(super) sform_code: i32,
     pub(super) quatern: [f64; 3],
     pub(super) qoffset: [f64; 3],
     pub(super) srow: [[f64; 4]; 3],
-    /// The time of the first step.
+    /// Time of the first volume, in the header's unit of time.
     pub(super) toffset: f64,
     pub(super) descrip: String,
 }
 
 impl Header {
-    /// Takes a header apart that is known to be of some form.
+    /// Parses a header whose format is known.
     pub(super) fn of(attempt: Attempt<'_>, form: Form, bytes: &[u8]) -> Result<Self, LoadError> {
         let Some(endian) = form.endian(bytes) else {
             return Err(attempt.bad_input(
@@ -122,20 +125,21 @@ impl Header {
             ));
         }
         let size = if form == Form::Nifti2 { BYTES_2 } else { BYTES_1 } as u64;
-        // Some programs leave the field empty.
+        // Some programs leave `vox_offset` at 0.
         let least = if header.is_single { size } else { 0 };
         let data_start = if offset < least as f64 { size + EXTENDER_BYTES } else { offset as u64 };
         Ok(Self { data_start, ..header })
     }
 
-    /// Slope and intercept of the values; a slope of 0 means that there are none.
+    /// Returns slope and intercept of the values; a slope of 0, or a non-finite number, means that the values are not
+    /// scaled.
     pub(super) fn scale(&self) -> (f64, f64) {
         let is_said = self.slope.is_finite() && self.intercept.is_finite() && self.slope != 0.0;
         if is_said { (self.slope, self.intercept) } else { (1.0, 0.0) }
     }
 }
 
-/// Numbers at places of a header; 0 behind its end.
+/// Reader of numbers and text at byte offsets of a header; reads zeros beyond its end.
 struct Fields<'a> {
     bytes: &'a [u8],
     endian: Endian,
@@ -161,7 +165,7 @@ impl Fields<'_> {
         found.unwrap_or([0; N])
     }
 
-    /// Text that ends with its first zero.
+    /// Reads text of at most `most` bytes, up to the first zero byte.
     fn text(&self, at: usize, most: usize) -> String {
         let bytes = self.bytes.get(at..at + most).unwrap_or_default();
         let text = bytes.split(|&byte| byte == 0).next().unwrap_or_default();
@@ -176,8 +180,8 @@ impl Fields<'_> {
         std::array::from_fn(|index| self.f64(at + 8 * index))
     }
 
-    /// A header of 348 bytes. Analyze has other things in the places of what NIfTI-1 has added; of these the slope is
-    /// what SPM wrote there.
+    /// Parses a header of 348 bytes. Analyze uses the fields that NIfTI-1 added for other purposes; the slope is read
+    /// in both, as SPM writes it there.
     fn first(&self, form: Form) -> Header {
         let is_nifti = form == Form::Nifti1;
         let added = |value: i32| if is_nifti { value } else { 0 };
@@ -210,7 +214,7 @@ impl Fields<'_> {
         }
     }
 
-    /// A header of 540 bytes.
+    /// Parses a NIfTI-2 header of 540 bytes.
     fn second(&self) -> Header {
         Header {
             form: Form::Nifti2,

@@ -1,12 +1,12 @@
-//! What a header says of its values.
+//! Hints on the values of a `NIfTI` or Analyze file: modality, unit, window, description, labels.
 
 use super::header::Header;
 use crate::data::{Hints, Meaning, Modality};
 
-/// Intents of numbers that stand for something (`NIFTI_INTENT_LABEL`, `NIFTI_INTENT_NEURONAME`).
+/// Intents whose numbers are labels (`NIFTI_INTENT_LABEL`, `NIFTI_INTENT_NEURONAME`).
 const LABEL_INTENTS: [i32; 2] = [1002, 1003];
 
-/// The hints of a header.
+/// Collects the hints that a header gives on its values.
 pub(super) fn of(header: &Header) -> Hints {
     let mut hints = Hints::default();
     hints.modality = Modality::of_description(&header.descrip);

@@ -1,7 +1,7 @@
-//! NIfTI-1, NIfTI-2 and what they come from, Analyze 7.5: a binary header, and the voxels behind it or in a second file.
+//! NIfTI-1, NIfTI-2 and their predecessor Analyze 7.5: a binary header, and the voxels behind it or in a second file.
 //!
-//! After `nifti1.h` and `nifti2.h` (<https://nifti.nimh.nih.gov>), and *ANALYZE 7.5 File Format* of the Mayo Foundation.
-//! World space is right-anterior-superior.
+//! After `nifti1.h` and `nifti2.h` (<https://nifti.nimh.nih.gov>), and *ANALYZE 7.5 File Format* of the Mayo
+//! Foundation. World space is right-anterior-superior.
 
 mod geometry;
 mod grid;
@@ -28,7 +28,7 @@ use grid::Grid;
 use header::{Form, Header};
 use number_type::NumberType;
 
-/// The longest ones first, so that names are cut where they end.
+/// File name endings, longest first, so that the longest match is cut from a name.
 const ENDINGS: &[&str] = &[".nii.gz", ".hdr.gz", ".img.gz", ".nii", ".hdr", ".img"];
 
 pub(super) const READER: Reader = Reader {
@@ -38,12 +38,12 @@ pub(super) const READER: Reader = Reader {
     load,
 };
 
-/// Loads a `NIfTI` or Analyze file, or two, of which either may be named.
+/// Loads a `NIfTI` or Analyze volume from a single file, or from a pair of which either file may be named.
 fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     let Source { path, input, start, options, control } = source;
     let attempt = Attempt { what: "read the NIfTI volume", path };
     let Some(form) = Form::of(start.bytes()) else {
-        // Voxels alone: what they are says the file beside them.
+        // The file holds voxels alone; the header lies in the file beside it.
         let header = pair::header(attempt)?;
         return read(attempt, &header, Content::of(input, start.is_gzip()), options, control);
     };
@@ -59,7 +59,7 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     witness.vouch(of_data, read(attempt, &header, Content::of(input, is_gzip), options, control))
 }
 
-/// Reads the volume of a header from what its voxels are in.
+/// Reads the volume that a header describes from the content that holds its voxels.
 fn read(
     attempt: Attempt<'_>,
     header: &Header,
@@ -82,7 +82,7 @@ fn read(
     let part = Part::asked(attempt, component, components, number_type.is_color)?;
     let stored = Stored { number: number_type.number, endian: header.endian, components, part };
     let dims = grid.dims;
-    // Lengths of vectors are made of several volumes, and known when all have been read.
+    // The magnitude of a vector needs all of its component volumes, so thinning applies after reading them whole.
     let is_planar = grid.components > 1;
     let checked = if is_planar && part == Part::Magnitude { Extent::checked_whole } else { Extent::checked };
     let extent = checked(attempt, "dim", dims, stored.voxel_type(), options.room(control))?;
@@ -91,14 +91,14 @@ fn read(
         fault.into_error(attempt, &layout, "bytes", "check the header, or copy the file again")
     };
 
-    // Volumes follow each other: all time steps of one component, then those of the next.
+    // Volumes are consecutive: all time steps of one component, then those of the next.
     let bytes = extent.voxels as u128 * (number_type.number.bytes() * number_type.components) as u128;
     let place = |component: usize| {
         let volumes = component as u128 * grid.frames as u128 + frame as u128;
         u64::try_from(u128::from(header.data_start) + volumes * bytes).unwrap_or(u64::MAX)
     };
     let is_planar = grid.components > 1;
-    // Of components, each of which is scaled.
+    // Magnitude of vectors: each component is scaled before its square is added.
     let are_lengths = is_planar && part == Part::Magnitude;
     let (first, last) = match part {
         Part::Component(at) if is_planar => (place(at), place(at)),
@@ -129,14 +129,14 @@ fn read(
     Parts { name, extent, placement, voxels, hints }.volume(attempt)
 }
 
-/// Slope and intercept with which values are what the header means. Colours are not scaled (`nifti1.h`, "data scaling").
+/// Returns the slope and intercept to apply to the values shown. Colours are not scaled (`nifti1.h`, "data scaling").
 fn scale_of(header: &Header, number_type: &NumberType, part: Part) -> Option<[f64; 2]> {
     let (slope, intercept) = header.scale();
     match part {
         _ if number_type.is_color => None,
-        // The length of a complex number: what is added to its real part cannot be told from it.
+        // Magnitude of a complex number: the intercept, which applies to the real part, cannot be recovered from it.
         Part::Magnitude => Some([slope.abs(), 0.0]),
-        // An imaginary part is only stretched.
+        // Imaginary parts are scaled by the slope only.
         Part::Component(at) if number_type.components > 1 && at > 0 => Some([slope, 0.0]),
         _ => Some([slope, intercept]),
     }

@@ -1,22 +1,22 @@
-//! Number types by their codes.
+//! Number types of voxels by `datatype` code.
 
 use super::super::LoadError;
 use super::super::number::{Number, Part};
 use super::header::Header;
 use crate::data::attempt::Attempt;
 
-/// What a voxel is.
+/// Number type of a voxel: stored type, number of components, and colour flag.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct NumberType {
     pub(super) number: Number,
-    /// Numbers of each voxel, beside each other.
+    /// Number of interleaved components of each voxel.
     pub(super) components: usize,
     pub(super) is_color: bool,
 }
 
 impl NumberType {
-    /// The type that a header's code stands for (`nifti1.h`, `DT_`… and `NIFTI_TYPE_`…). From 130 to 136 are those that
-    /// SPM added to Analyze.
+    /// Looks up the type of a header's `datatype` code (`nifti1.h`, `DT_`… and `NIFTI_TYPE_`…). Codes 130 to 136 are
+    /// those that SPM added to Analyze.
     pub(super) fn of(attempt: Attempt<'_>, header: &Header) -> Result<Self, LoadError> {
         let scalar = |number| Ok(Self { number, components: 1, is_color: false });
         let colors = |components| Ok(Self { number: Number::U8, components, is_color: true });
@@ -51,7 +51,7 @@ impl NumberType {
         }
     }
 
-    /// What the user is told where not all of a voxel is seen.
+    /// Returns a remark for the user if only part of a voxel's data is shown.
     pub(super) fn remark(&self, part: Part) -> Option<&'static str> {
         if self.components == 2 && part == Part::Magnitude {
             return Some("complex numbers are shown as their magnitude");

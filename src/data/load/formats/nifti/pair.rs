@@ -1,4 +1,4 @@
-//! The other of two files: the header of voxels, or the voxels of a header.
+//! Pairs of header and data files (`.hdr`, `.img`): finds the second file of a pair.
 
 use std::io::{Read as _, Seek as _};
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use super::ENDINGS;
 use super::header::{Form, Header};
 use crate::data::attempt::Attempt;
 
-/// The header beside a file of voxels.
+/// Reads the header file beside a file of voxels.
 pub(super) fn header(attempt: Attempt<'_>) -> Result<Header, LoadError> {
     let Some(path) = other(attempt, "hdr")? else {
         return Err(attempt.bad_input(
@@ -30,7 +30,7 @@ pub(super) fn header(attempt: Attempt<'_>) -> Result<Header, LoadError> {
     Header::of(of_header, form, start.bytes())
 }
 
-/// The file of voxels beside a header.
+/// Finds the data file beside a header file.
 pub(super) fn data(attempt: Attempt<'_>) -> Result<PathBuf, LoadError> {
     other(attempt, "img")?.ok_or_else(|| {
         attempt.bad_input(
@@ -41,7 +41,7 @@ pub(super) fn data(attempt: Attempt<'_>) -> Result<PathBuf, LoadError> {
     })
 }
 
-/// The file that is called like this one and has another ending.
+/// Finds the file in the same folder with the same stem and another ending, in either case and optionally gzipped.
 fn other(attempt: Attempt<'_>, ending: &str) -> Result<Option<PathBuf>, LoadError> {
     let stem = bare_name(attempt.path, ENDINGS);
     let folder = attempt.path.parent().unwrap_or(Path::new(""));
@@ -54,7 +54,7 @@ fn other(attempt: Attempt<'_>, ending: &str) -> Result<Option<PathBuf>, LoadErro
     Ok(None)
 }
 
-/// Whether a file is compressed as a whole; goes back to its beginning.
+/// Returns true if a file is gzipped as a whole; rewinds it to its beginning.
 pub(super) fn starts_as_gzip(attempt: Attempt<'_>, input: &mut Input) -> Result<bool, LoadError> {
     let mut magic = Vec::new();
     let looked = input.reader.by_ref().take(3).read_to_end(&mut magic).and_then(|_| input.reader.rewind());

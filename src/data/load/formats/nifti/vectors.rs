@@ -1,4 +1,4 @@
-//! Vectors whose components are volumes of their own.
+//! Magnitudes of vectors whose components are stored as separate volumes.
 
 use super::super::LoadControl;
 use super::super::content::Content;
@@ -7,7 +7,8 @@ use super::super::samples::{BLOCK_BYTES, Fault, fill, reserve};
 use crate::data::Samples;
 use crate::data::attempt::Extent;
 
-/// The lengths of vectors, from volumes of their components that begin at some places, in this order.
+/// Computes the magnitudes of vectors from the volumes of their components, which begin at the ascending byte offsets
+/// `places`.
 pub(super) fn lengths(
     content: &mut Content,
     stored: &Stored,

@@ -1,25 +1,25 @@
-//! Ends of an axis, as headers say them that have `axis mins` and `axis maxs` in place of `spacings`.
+//! Bounds of an axis, for headers that give `axis mins` and `axis maxs` instead of `spacings`.
 
-/// Begin and end of an axis in the file's unit; NaN where they are not known.
+/// Lower and upper bound of an axis in the file's unit; NaN if unknown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct AxisBounds {
     pub(super) low: f64,
     pub(super) high: f64,
-    /// True where the first and last sample lie at the bounds, and not half a distance within.
+    /// True if the first and last sample lie at the bounds (nodes), false if half a spacing inside (cells).
     pub(super) is_node: bool,
 }
 
 impl AxisBounds {
-    /// Distance of so many samples; NaN where the bounds do not say it.
+    /// Returns the spacing of this many samples; NaN if the bounds do not determine it.
     ///
-    /// Cells fill the axis, nodes lie at its ends (<https://teem.sourceforge.net/nrrd/format.html>, "axis mins"). Without
-    /// a word samples are cells, as Teem takes them (`nrrdDefaultCenter`).
+    /// Cells fill the axis, nodes lie at its ends (<https://teem.sourceforge.net/nrrd/format.html>, "axis mins").
+    /// Without `centers` samples count as cells, as in Teem (`nrrdDefaultCenter`).
     pub(super) fn spacing(self, samples: u64) -> f64 {
         let steps = if self.is_node { samples.saturating_sub(1) } else { samples };
         if steps == 0 { f64::NAN } else { (self.high - self.low) / steps as f64 }
     }
 
-    /// Place of the first of samples that are so far apart; 0 where it is not known.
+    /// Returns the position of the first sample, given the spacing; 0 if unknown.
     pub(super) fn first_sample(self, spacing: f64) -> f64 {
         let first = if self.is_node { self.low } else { self.low + 0.5 * spacing };
         if first.is_finite() { first } else { 0.0 }

@@ -1,4 +1,4 @@
-//! The data of all files as one stream of bytes: decoded, without what is skipped.
+//! Data stream of an NRRD volume: the bytes of all data files, decoded and without skipped parts.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
@@ -14,10 +14,10 @@ use crate::data::attempt::{Attempt, quoted};
 
 pub(super) const HELP: &str = "check sizes, type and the skips in the header, or copy the file again";
 
-/// A file with data.
+/// Location of data: behind the header, or in a file of its own.
 #[derive(Debug, Clone)]
 pub(super) enum Place {
-    /// The header's own, from this byte on.
+    /// Header file, and the byte offset at which its data begin.
     Attached(PathBuf, u64),
     Detached(PathBuf),
 }
@@ -30,16 +30,16 @@ impl Place {
     }
 }
 
-/// The files that are still to be read, and the one that is.
+/// Reader that concatenates the decoded data of all files.
 pub(super) struct Data<'a> {
-    /// The next one last.
+    /// Files that are still to be read, the next one last.
     places: Vec<Place>,
     storage: Storage,
-    /// Bytes that each file has when it is decoded.
+    /// Number of bytes per file after decoding.
     bytes_of_file: u64,
     control: &'a LoadControl,
     current: Option<Current>,
-    /// Why the last read has failed, in better words.
+    /// Detailed error of the last failed read.
     pub(super) failure: Option<LoadError>,
 }
 
@@ -50,9 +50,9 @@ struct Current {
     left: u64,
 }
 
-/// What the bytes of a file come from.
+/// Source of a file's bytes: raw, or through a decoder.
 enum Stream {
-    /// As they are.
+    /// Raw bytes, as stored in the file.
     Plain(BufReader<File>),
     Decoded(Box<dyn Read>),
 }
@@ -77,14 +77,14 @@ impl<'a> Data<'a> {
         Self { places, storage, bytes_of_file, control, current: None, failure: None }
     }
 
-    /// Goes to a byte of the stream; files before it are not opened.
+    /// Skips to a byte of the stream; files before it are not opened.
     pub(super) fn skip(&mut self, bytes: u64) -> io::Result<()> {
         let files = bytes / self.bytes_of_file.max(1);
         self.places.truncate(self.places.len().saturating_sub(usize::try_from(files).unwrap_or(usize::MAX)));
         self.leap(bytes % self.bytes_of_file.max(1))
     }
 
-    /// Goes forward: of what is neither packed nor text nothing is read.
+    /// Skips forward; in raw files by seeking, without reading.
     pub(super) fn leap(&mut self, bytes: u64) -> io::Result<()> {
         let mut left = bytes;
         let mut block = Vec::new();
@@ -97,7 +97,8 @@ impl<'a> Data<'a> {
                 self.check_end().map_err(|failure| self.failed(failure))?;
                 continue;
             }
-            // As much as lies between two looks at `cancel`; little where a file has yet to be opened.
+            // Reads at most as much as between two checks for cancellation; a single byte if a file has yet to be
+            // opened.
             let most = if self.current.is_some() { 1 << 16 } else { 1 };
             block.resize(usize::try_from(left).map_or(most, |left| left.min(most)), 0);
             let got = self.read(&mut block)?;
@@ -109,13 +110,13 @@ impl<'a> Data<'a> {
         Ok(())
     }
 
-    /// Keeps why something has failed, and says that it has.
+    /// Stores the detailed error, and returns a generic one for `io::Read`.
     fn failed(&mut self, failure: LoadError) -> io::Error {
         self.failure = Some(failure);
         io::Error::other("the data cannot be read")
     }
 
-    /// Opens the next file; whether there is one.
+    /// Opens the next file; returns false if there is none.
     fn open_next(&mut self) -> Result<bool, LoadError> {
         let Some(place) = self.places.pop() else { return Ok(false) };
         let attempt = attempt(&place);
@@ -127,8 +128,8 @@ impl<'a> Data<'a> {
         Ok(true)
     }
 
-    /// What was read of the current file, where it goes on; at its end it must be as it was, and nothing may follow that
-    /// was not announced.
+    /// Does nothing within the current file; at its end, verifies that the file has not changed and that no
+    /// unannounced data follow.
     fn check_end(&mut self) -> Result<(), LoadError> {
         let Some(current) = &mut self.current else { return Ok(()) };
         if current.left > 0 {
@@ -136,9 +137,9 @@ impl<'a> Data<'a> {
         }
         let attempt = Attempt { what: READ, path: &current.path };
         let is_more = match self.storage.encoding {
-            // Several headers can point into one file.
+            // Several headers may refer to one file.
             Encoding::Raw => false,
-            // Also makes decoders look at the checksum, which comes after the last byte.
+            // Also makes decoders verify the checksum, which follows the last byte.
             _ => {
                 current
                     .reader
@@ -192,14 +193,14 @@ impl Read for Data<'_> {
     }
 }
 
-/// What messages say is being done.
+/// Action that error messages name for data files.
 const READ: &str = "read the NRRD volume's data";
 
 fn attempt(place: &Place) -> Attempt<'_> {
     Attempt { what: READ, path: place.path() }
 }
 
-/// A decoder of a file, at the first byte of its data; of uncompressed ones the length is checked.
+/// Opens the decoder of a file at the first byte of its data; the length of uncompressed data is checked.
 fn decoded(
     attempt: Attempt<'_>,
     mut input: Input,
@@ -231,21 +232,21 @@ fn decoded(
     match storage.encoding {
         Encoding::Raw if found < bytes => return Err(truncated(bytes, found, "bytes")),
         Encoding::Raw if found > bytes => {
-            // Legal: several headers can point into one file.
+            // Legal: several headers may refer to one file.
             attempt.warn(format_args!("{} bytes after the voxels are ignored", found - bytes));
         }
         Encoding::Gzip if most_inflated(available) < bytes => {
             return Err(truncated(bytes, most_inflated(available), "bytes"));
         }
         Encoding::Hex if found / 2 < bytes => return Err(truncated(bytes, found / 2, "bytes")),
-        // A digit each and a space between: less cannot hold the numbers.
+        // Minimum size of text: a digit per number, and a space between two.
         Encoding::Text if found.div_ceil(2) < numbers => {
             return Err(truncated(numbers, found.div_ceil(2), "numbers"));
         }
         _ => {}
     }
     let reader = input.reader;
-    // The skipped bytes of compressed data are counted after inflating.
+    // In compressed data, `byte skip` counts bytes after decompression.
     let mut decoder = match storage.encoding {
         Encoding::Raw => Stream::Plain(reader),
         Encoding::Gzip => Stream::Decoded(Box::new(GzipMembers::new(reader))),
@@ -255,7 +256,7 @@ fn decoded(
             skip_bytes(attempt, storage.encoding, &mut reader, skip, control)?;
             return Ok(Stream::Decoded(match storage.encoding {
                 Encoding::Hex => Box::new(Hex { reader }),
-                // One more than needed tells too much from enough.
+                // One number more than needed, so that surplus data are detected.
                 _ => Box::new(TextNumbers::new(reader, storage.number, numbers.saturating_add(1))),
             }));
         }
@@ -283,7 +284,7 @@ fn skip_bytes(
     Ok(())
 }
 
-/// An error of a decoder: about the data, or about the disk that they are on.
+/// Converts an error of a decoder: either the data are corrupt, or the disk failed.
 fn broken(attempt: Attempt<'_>, encoding: Encoding, error: io::Error) -> LoadError {
     let name = match encoding {
         Encoding::Gzip => "gzip",
@@ -306,7 +307,7 @@ fn broken(attempt: Attempt<'_>, encoding: Encoding, error: io::Error) -> LoadErr
     }
 }
 
-/// Bytes from pairs of hexadecimal digits, with white space anywhere.
+/// Decoder of pairs of hexadecimal digits; white space is ignored.
 struct Hex<R> {
     reader: R,
 }

@@ -1,4 +1,4 @@
-//! The files that hold the voxels: one, a list of them, or a pattern with numbers.
+//! Data files of an NRRD volume: one file, a list, or a numbered pattern.
 //!
 //! `data file: NAME`, `data file: LIST [dims]` with names in the lines after it, and
 //! `data file: FORMAT min max step [dims]` with a format of C like `slice%03d.raw`.
@@ -9,13 +9,13 @@ use crate::data::attempt::{Attempt, quoted};
 
 pub(super) const FIELD: &str = "data file";
 
-/// Files of one volume at most: eight times the slices of the longest scans.
+/// Maximum number of files of one volume: eight times the slices of the longest scans.
 const MOST_FILES: u64 = 1 << 16;
 
-/// Digits to which numbers in names are filled up, at most.
+/// Maximum width to which numbers in names are padded.
 const MOST_DIGITS: usize = 32;
 
-/// The names of the data files, each with the same share of the data; none where the data follow the header.
+/// Returns the names of the data files, each with an equal share of the data; `None` if the data follow the header.
 pub(super) fn names(
     attempt: Attempt<'_>,
     header: &Header,
@@ -34,7 +34,7 @@ pub(super) fn names(
     Ok(Some(names))
 }
 
-/// First, last and step of `FORMAT min max step [dims]`.
+/// Parses minimum, maximum and step of `FORMAT min max step [dims]`.
 fn pattern_numbers(words: &[&str]) -> Option<[i64; 3]> {
     let numbers: Option<Vec<i64>> = words.iter().skip(1).map(|word| word.parse().ok()).collect();
     match (words.first()?.contains('%'), numbers?.as_slice()) {
@@ -71,7 +71,7 @@ fn numbered(
     Ok((0..count as i128).map(name).collect())
 }
 
-/// What a format of C is made of: text, how wide the number is and whether zeros fill it up, text.
+/// Splits a C format with one integer: text before it, width, true for zero padding, text behind it.
 fn parts(format: &str) -> Option<(String, usize, bool, String)> {
     const SIGN: &str = "\0";
     let escaped = format.replace("%%", SIGN);
@@ -85,7 +85,7 @@ fn parts(format: &str) -> Option<(String, usize, bool, String)> {
     is_whole.then(|| (text(before), width, digits.starts_with('0'), text(behind)))
 }
 
-/// Checks that there are as many files as the header's dimension of a file's data wants.
+/// Checks that the number of files matches the dimension that each file holds.
 fn check_count(
     attempt: Attempt<'_>,
     count: u64,
@@ -96,7 +96,7 @@ fn check_count(
     if count == 0 || count > MOST_FILES {
         return Err(wrong(format!("1 to {MOST_FILES} files were expected, {count} are named")));
     }
-    // Without a word about it each file is a slice along the slowest axis.
+    // By default each file is a slice along the slowest axis.
     let dimension = match dimension {
         None => sizes.len().saturating_sub(1),
         Some(text) => {
@@ -110,7 +110,7 @@ fn check_count(
         }
     };
     let expected = sizes[dimension..].iter().fold(1u64, |product, &size| product.saturating_mul(size));
-    // Files of the whole dimension are slabs along the slowest axis, of one size.
+    // Files of the full dimension are equal slabs along the slowest axis.
     let is_right = if dimension == sizes.len() {
         sizes.last().is_some_and(|&size| size % count == 0)
     } else {

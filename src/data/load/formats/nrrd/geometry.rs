@@ -1,7 +1,8 @@
-//! Which axes are the volume's, what the others hold, and where the volume lies in the world.
+//! Geometry of an NRRD volume: which axes are spatial, what the others hold, and the placement in the world.
 //!
-//! `dimension`, `sizes`, `kinds`, `spacings`, `space`, `space dimension`, `space directions`,
-//! `space origin`, `axis mins`, `axis maxs`, `centers`, `units` and `space units`. The world is right-anterior-superior millimetres.
+//! Reads `dimension`, `sizes`, `kinds`, `spacings`, `space`, `space dimension`, `space directions`, `space origin`,
+//! `axis mins`, `axis maxs`, `centers`, `units` and `space units`. World space is right-anterior-superior
+//! millimetres.
 
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -12,16 +13,16 @@ use super::header::Header;
 use super::space::{counts_voxels, directions, flips, is_anatomical, mm_per_unit, origin};
 use crate::data::attempt::{Attempt, quoted};
 
-/// The largest dimension that NRRD allows.
+/// Maximum dimension that NRRD allows.
 const MOST_AXES: usize = 16;
 
-/// Numbers for each voxel that are read at most.
+/// Maximum number of components per voxel.
 const MOST_COMPONENTS: u64 = 1 << 10;
 
-/// Axes without a kind that may hold colours: of red, green, blue and opacity.
+/// Maximum length of an axis of unknown kind that may hold colours: red, green, blue and opacity.
 const MOST_COLORS: u64 = 4;
 
-/// Kinds of axes that hold components or, the first two, times or what else is listed; not places.
+/// Kinds of non-spatial axes: the first two hold times or listed volumes, the others hold components.
 const OTHER_KINDS: [&str; 11] = [
     "time",
     "list",
@@ -39,44 +40,44 @@ const OTHER_KINDS: [&str; 11] = [
 /// Kinds of axes that hold red, green, blue and perhaps opacity.
 const COLORS: [&str; 4] = ["rgb-color", "rgba-color", "3-color", "4-color"];
 
-/// The volume's grid, and what the file has for each of its places.
+/// Grid of a volume, its placement, and the numbers stored per voxel.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Geometry {
-    /// Voxels along the three axes, not yet checked.
+    /// Number of voxels along the three axes, not yet validated.
     pub(super) dims: [u64; 3],
     pub(super) placement: Placement,
-    /// Numbers that a voxel has.
+    /// Number of components of each voxel.
     pub(super) components: usize,
-    /// Whether they lie behind each other, a whole volume of each.
+    /// True if components are planar, that is, each is a whole volume behind the previous one.
     pub(super) are_planes: bool,
     pub(super) is_color: bool,
-    /// Whether those numbers are time steps, and not components.
+    /// True if the interleaved numbers are time steps, not components.
     pub(super) are_times: bool,
-    /// True where the header calls them a list: volumes of their own, unless they are layers of labels.
+    /// True if the header calls the interleaved numbers a list: separate volumes, unless they are layers of labels.
     pub(super) are_listed: bool,
-    /// Volumes behind each other.
+    /// Number of consecutive volumes (time steps).
     pub(super) frames: u64,
-    /// Of all axes.
+    /// Lengths of all axes of the array, fastest first.
     pub(super) sizes: Vec<u64>,
 }
 
-/// One axis of the array.
+/// One axis of the array, as the header describes it.
 #[derive(Debug, Clone)]
 struct Axis {
     size: u64,
     kind: String,
-    /// Whether the header does not say that it holds components or times.
+    /// True unless the header says that the axis holds components or times.
     spatial: bool,
-    /// One step along it in the file's space, in millimetres.
+    /// Step along the axis in the file's space, in millimetres.
     direction_mm: Option<DVec3>,
-    /// The distance of its samples in millimetres; NaN where it is not known.
+    /// Spacing of the samples in millimetres; NaN if unknown.
     spacing_mm: f64,
-    /// Place of its first sample in millimetres, by its bounds; 0 where they are not known.
+    /// Position of the first sample in millimetres, from the axis bounds; 0 if unknown.
     first_mm: f64,
 }
 
 impl Axis {
-    /// Whether the header says that it holds numbers of one voxel.
+    /// True if the header says that the axis holds the components of a voxel.
     fn is_of_components(&self) -> bool {
         !self.spatial && OTHER_KINDS[2..].iter().any(|kind| self.kind.ends_with(kind))
     }
@@ -129,7 +130,7 @@ impl Geometry {
     }
 }
 
-/// Where the voxels lie.
+/// Returns the placement of the voxels in the world.
 fn placement(attempt: Attempt<'_>, header: &Header, axes: &[&Axis]) -> Result<Placement, LoadError> {
     let ras_from_file = DMat3::from_diagonal(flips(attempt, header)?);
     let origin_mm = origin(attempt, header)? * mm_per_unit(header, "space units").unwrap_or(1.0);
@@ -143,7 +144,7 @@ fn placement(attempt: Attempt<'_>, header: &Header, axes: &[&Axis]) -> Result<Pl
     }
     if !has_directions {
         let spacing = |axis: usize| axes.get(axis).map(|axis| axis.spacing_mm);
-        // A picture: its one slice is as thick as its pixels are wide.
+        // A two-dimensional image: its single slice is as thick as its pixels are wide.
         let thickness = || axes.iter().map(|axis| axis.spacing_mm.abs()).product::<f64>().sqrt();
         let spacings = [0, 1, 2].map(|axis| spacing(axis).unwrap_or_else(thickness));
         let spaced = Placement::spaced(spacings);
@@ -173,7 +174,7 @@ fn placement(attempt: Attempt<'_>, header: &Header, axes: &[&Axis]) -> Result<Pl
     Ok(if is_anatomical { placement } else { placement.of_no_body() })
 }
 
-/// All axes of the array, as the header describes them.
+/// Reads all axes of the array from the header.
 fn axes(attempt: Attempt<'_>, header: &Header) -> Result<Vec<Axis>, LoadError> {
     let dimension_text = header.require(attempt, "dimension", "add dimension: 3")?;
     let dimension = dimension_text.parse().ok().filter(|n| (1..=MOST_AXES).contains(n)).ok_or_else(|| {
@@ -186,7 +187,7 @@ fn axes(attempt: Attempt<'_>, header: &Header) -> Result<Vec<Axis>, LoadError> {
     header.require(attempt, "sizes", "add the number of samples along each axis")?;
     let sizes: Vec<u64> = numbers(attempt, header, "sizes", dimension)?.unwrap_or_default();
     let spacings: Option<Vec<f64>> = numbers(attempt, header, "spacings", dimension)?;
-    // Older headers say where an axis begins and ends.
+    // Older headers give the bounds of an axis instead of its spacing.
     let bounds = |field: &str| match numbers::<f64>(attempt, header, field, dimension) {
         Ok(bounds) => bounds,
         Err(error) => {
@@ -199,7 +200,7 @@ fn axes(attempt: Attempt<'_>, header: &Header) -> Result<Vec<Axis>, LoadError> {
     let directions = directions(attempt, header, dimension)?;
     let kinds: Vec<_> = header.get("kinds").unwrap_or_default().split_whitespace().collect();
     let space_unit_mm = mm_per_unit(header, "space units").unwrap_or(1.0);
-    // Axes with different known units are not a case that occurs: the first known one counts.
+    // Different known units per axis do not occur in practice: the first known one counts.
     let axis_unit_mm = mm_per_unit(header, "units").unwrap_or(space_unit_mm);
     Ok((0..dimension)
         .map(|i| {
@@ -222,8 +223,8 @@ fn axes(attempt: Attempt<'_>, header: &Header) -> Result<Vec<Axis>, LoadError> {
         .collect())
 }
 
-/// The axes without those of one sample that are too many; two or three are those of space, and the others come before or
-/// behind them.
+/// Drops surplus axes of length 1; afterwards two or three axes are spatial, and the others lie before or behind
+/// them.
 fn volume_axes(attempt: Attempt<'_>, mut axes: Vec<Axis>) -> Result<Vec<Axis>, LoadError> {
     let dimension = axes.len();
     axes.retain(|axis| axis.spatial || axis.size != 1);
@@ -256,8 +257,8 @@ fn volume_axes(attempt: Attempt<'_>, mut axes: Vec<Axis>) -> Result<Vec<Axis>, L
     Ok(axes)
 }
 
-/// Sets one of too many axes apart of which the header does not say what they are: that which has no spacing, or the
-/// first where it may hold colours, or else the last.
+/// Marks one of too many spatial axes as non-spatial if the header does not tell which: the one without a spacing, or
+/// the first if it may hold colours, or else the last.
 fn set_apart(axes: &mut [Axis]) {
     let spatial: Vec<usize> = (0..axes.len()).filter(|&at| axes[at].spatial).collect();
     let [first, others @ .., last] = &spatial[..] else { return };
@@ -274,7 +275,7 @@ fn set_apart(axes: &mut [Axis]) {
     axes[if is_first { *first } else { *last }].spatial = false;
 }
 
-/// A list of `count` numbers, if the header has the field.
+/// Returns a list of `count` numbers, if the header has the field.
 fn numbers<T: std::str::FromStr>(
     attempt: Attempt<'_>,
     header: &Header,

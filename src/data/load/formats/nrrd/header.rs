@@ -1,4 +1,4 @@
-//! The header's lines: a magic, then `field: value`, `key:=value` and `# comment`, then an empty line.
+//! Header lines of an NRRD file: magic, then `field: value`, `key:=value` and `# comment`, then an empty line.
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, Read as _};
@@ -6,19 +6,19 @@ use std::io::{BufRead, Read as _};
 use super::super::LoadError;
 use crate::data::attempt::{Attempt, quoted};
 
-/// Longer headers are refused: real ones have a few kilobytes.
+/// Maximum size of a header: real ones have a few kilobytes.
 const LONGEST_HEADER_BYTES: u64 = 1 << 20;
 
-/// The header's fields as text.
+/// Header fields of an NRRD file, as text.
 #[derive(Debug)]
 pub(super) struct Header {
-    /// By name in lower case without spaces: that makes `data file` and `datafile` one field.
+    /// Values by field name in lower case without spaces, so that `data file` and `datafile` are one field.
     fields: BTreeMap<String, String>,
-    /// Keys with their values, as they are written; the first of several.
+    /// Values by key in lower case; the first of several wins.
     keys: BTreeMap<String, String>,
-    /// The lines that follow a list of data files: their names.
+    /// Lines that follow a list of data files: their names.
     pub(super) files: Vec<String>,
-    /// Where the data begin in this file; `None` when the file ended before an empty line.
+    /// Byte offset of the data in this file; `None` if the file ends before an empty line.
     data_start: Option<u64>,
 }
 
@@ -64,27 +64,27 @@ impl Header {
         Ok(Self { fields, keys, files, data_start })
     }
 
-    /// The value of a field, if the header has it.
+    /// Returns the value of a field, if the header has it.
     pub(super) fn get(&self, name: &str) -> Option<&str> {
         self.fields.get(&key(name)).map(String::as_str)
     }
 
-    /// The value of a field that has two names; nothing where the header has neither.
+    /// Returns the value of a field that has two names; empty if the header has neither.
     pub(super) fn either(&self, name: &str, other: &str) -> &str {
         self.get(name).or_else(|| self.get(other)).unwrap_or_default()
     }
 
-    /// The value of a key, if the header has it; in any case of letters.
+    /// Returns the value of a key, if the header has it; keys are case-insensitive.
     pub(super) fn get_key(&self, name: &str) -> Option<&str> {
         self.keys.get(&name.to_lowercase()).map(String::as_str)
     }
 
-    /// The value of a field that must be there; `help` says what it should be.
+    /// Returns the value of a mandatory field; `help` tells the user what it should be.
     pub(super) fn require(&self, attempt: Attempt<'_>, name: &str, help: &str) -> Result<&str, LoadError> {
         self.get(name).ok_or_else(|| attempt.bad_input(name, format!("the field {name} is missing"), help))
     }
 
-    /// Where the data begin in the header's own file.
+    /// Returns the byte offset of data in the header's own file.
     pub(super) fn data_start(&self, attempt: Attempt<'_>) -> Result<u64, LoadError> {
         self.data_start.ok_or_else(|| {
             attempt.bad_input(
@@ -112,14 +112,14 @@ fn check_magic(attempt: Attempt<'_>, line: &str) -> Result<(), LoadError> {
     }
 }
 
-/// The key of a line, in lower case, and its value: `key:=value`. Comments and fields have none.
+/// Splits a `key:=value` line into key, in lower case, and value; `None` for comments and fields.
 fn key_and_value(line: &str) -> Option<(String, String)> {
     let (key, value) =
         line.split_once(":=").filter(|(key, _)| !key.contains(':') && !key.starts_with('#'))?;
     Some((key.trim().to_lowercase(), value.trim().to_owned()))
 }
 
-/// Adds the field of one line. True when it announces a list of data files.
+/// Adds the field of one line; returns true if it announces a list of data files.
 fn add_field(
     attempt: Attempt<'_>,
     fields: &mut BTreeMap<String, String>,

@@ -1,11 +1,11 @@
-//! How the voxels are stored: `type`, `encoding`, `endian`, `line skip`, `byte skip`.
+//! Storage layout of NRRD voxels: `type`, `encoding`, `endian`, `line skip`, `byte skip`.
 
 use super::super::number::Number;
 use super::super::{Endian, LoadError};
 use super::header::Header;
 use crate::data::attempt::{Attempt, quoted};
 
-/// How the numbers are written.
+/// Encoding of the numbers in the data files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Encoding {
     Raw,
@@ -15,16 +15,16 @@ pub(super) enum Encoding {
     Text,
 }
 
-/// How the voxels are stored.
+/// Storage of the voxels: number type, encoding, byte order and skipped parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Storage {
     pub(super) number: Number,
     pub(super) encoding: Encoding,
-    /// `None` where it makes no difference.
+    /// Byte order; may be `None` for text and single bytes, which need none.
     pub(super) endian: Option<Endian>,
-    /// Lines before the data.
+    /// Number of lines to skip before the data.
     pub(super) line_skip: u64,
-    /// Bytes before the data, after the lines; `None`: the data are the file's last bytes.
+    /// Number of bytes to skip after those lines; `None` if the data are the file's last bytes (`byte skip: -1`).
     pub(super) byte_skip: Option<u64>,
 }
 

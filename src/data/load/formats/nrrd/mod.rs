@@ -1,9 +1,9 @@
 //! NRRD, "nearly raw raster data": a text header, and the voxels behind it or in other files.
 //!
 //! After the definition at <https://teem.sourceforge.net/nrrd/format.html>, versions 1 to 5. World space is
-//! right-anterior-superior millimetres. An axis that is none of space is one of components where it is the fastest,
-//! and one of time steps where it is the slowest, unless its kind says that it is one of components; an axis of kind
-//! `list` holds volumes, wherever it stands.
+//! right-anterior-superior millimetres. A non-spatial axis holds components if it is the fastest, and time steps if
+//! it is the slowest, unless its kind says that it holds components; an axis of kind `list` holds volumes, wherever
+//! it stands.
 
 mod bounds;
 mod data;
@@ -33,10 +33,10 @@ use geometry::Geometry;
 use header::Header;
 use layout::{Encoding, Storage};
 
-/// Time steps of one file at most.
+/// Maximum number of time steps of one file.
 const MOST_FRAMES: u64 = 1 << 16;
 
-/// Whether a file that begins like this is an NRRD file.
+/// True if these bytes begin an NRRD file.
 pub(super) fn is_nrrd(magic: &[u8]) -> bool {
     magic.starts_with(b"NRRD000")
 }
@@ -44,7 +44,7 @@ pub(super) fn is_nrrd(magic: &[u8]) -> bool {
 pub(super) const READER: Reader =
     Reader { name: "NRRD", endings: &[".nrrd", ".nhdr"], recognises: |start| is_nrrd(start.stored()), load };
 
-/// Loads an NRRD file.
+/// Loads an NRRD file, with its data files.
 fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     let Source { path, mut input, options, control, .. } = source;
     let attempt = Attempt { what: "read the NRRD volume", path };
@@ -54,9 +54,9 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     let mut hints = header.hints();
     let is_layered = hints.meaning == Meaning::Labels && geometry.components > 1;
     let (frame, part) = chosen(attempt, &geometry, storage.number, is_layered, options)?;
-    // Numbers in text are made little-endian, and those of one byte need no order.
+    // Text is parsed to little-endian bytes, and single bytes have no byte order.
     let endian = storage.endian.filter(|_| storage.encoding != Encoding::Text).unwrap_or(Endian::Little);
-    // One of several planes is read as if it was a time step.
+    // One of several component planes is read like a time step.
     let (frame, frames, stored) = match part {
         Part::Component(plane) if geometry.are_planes => {
             (plane as u64, geometry.components as u64, Stored::scalar(storage.number, endian))
@@ -117,7 +117,8 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     Parts { name, extent, placement: geometry.placement, voxels, hints }.volume(attempt)
 }
 
-/// Which time step is read, from 0 where they are behind each other, and which of the numbers beside each other.
+/// Determines the time step to read, from 0 for consecutive volumes, and the part of interleaved numbers that is
+/// shown.
 fn chosen(
     attempt: Attempt<'_>,
     geometry: &Geometry,
@@ -126,9 +127,9 @@ fn chosen(
     options: &LoadOptions,
 ) -> Result<(u64, Part), LoadError> {
     let components = geometry.components;
-    // Volumes whose numbers lie beside each other.
+    // Volumes whose numbers are interleaved.
     let are_woven = geometry.are_times || (geometry.are_listed && !is_layered);
-    // With time steps behind them, those of a list are channels.
+    // With time steps behind it, a list axis holds channels.
     let are_channels = are_woven && geometry.are_listed && geometry.frames > 1;
     let times = if are_woven && !are_channels { components as u64 } else { geometry.frames };
     if times > MOST_FRAMES || (geometry.are_times && geometry.frames > 1) {
@@ -150,9 +151,9 @@ fn chosen(
     if are_woven {
         return Ok((0, Part::Component(frame)));
     }
-    // Programs that know no colours write them as vectors of bytes.
+    // Programs without a notion of colour write vectors of bytes.
     let is_color = geometry.is_color || (number == Number::U8 && (3..=4).contains(&components));
-    // Numbers of segments make nothing together: those of the first layer have names.
+    // A magnitude of label numbers is meaningless; only segments of the first layer have names.
     let component = if is_layered {
         options.choice.layer_among(components).or(Some(0))
     } else {

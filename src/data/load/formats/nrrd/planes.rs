@@ -1,4 +1,5 @@
-//! Components that lie behind each other, a whole volume of each, as some programs write vectors and colours.
+//! Planar components: each component is a whole volume behind the previous one, as some programs write vectors and
+//! colours.
 
 use std::io::Read;
 
@@ -6,13 +7,13 @@ use super::super::LoadControl;
 use super::super::number::Stored;
 use super::super::samples::{Fault, fill};
 
-/// Voxels that are moved at a time: some 64 KiB.
+/// Number of voxels interleaved at a time, about 64 KiB.
 const VOXELS: usize = 1 << 14;
 
-/// The numbers of each of so many voxels beside each other, as [`Stored`] reads them.
+/// Reads planar components into interleaved order, as [`Stored`] expects them.
 ///
 /// # Errors
-/// Where the data end too early, or there is no memory for all of them.
+/// `Fault::Short` if the data end early, `Fault::NoMemory` if they do not fit in memory.
 pub(super) fn side_by_side(
     data: &mut impl Read,
     stored: &Stored,

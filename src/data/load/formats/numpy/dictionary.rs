@@ -1,20 +1,20 @@
-//! The dictionary at the beginning of an array: Python's notation, of which only what NumPy writes is read.
+//! Parser of the Python dictionary in an array's header, restricted to what NumPy writes.
 
-/// A value of the dictionary.
+/// Value of a dictionary entry.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Value {
     Text(String),
     Bool(bool),
-    /// A tuple of whole numbers.
+    /// Tuple of non-negative integers.
     Numbers(Vec<u64>),
-    /// A list, of which nothing is kept: the fields of records.
+    /// List, whose content is discarded: the fields of a record type.
     List,
 }
 
-/// Most axes that NumPy's arrays can have.
+/// Maximum number of axes of a NumPy array.
 const MOST_AXES: usize = 64;
 
-/// The entries of a dictionary, or what was expected where it is none.
+/// Parses a dictionary; the error tells what was expected instead.
 pub(super) fn parse(text: &str) -> Result<Vec<(String, Value)>, &'static str> {
     let mut text = Text(text.trim_ascii());
     text.require('{', "a dictionary in braces")?;
@@ -31,7 +31,7 @@ pub(super) fn parse(text: &str) -> Result<Vec<(String, Value)>, &'static str> {
     if text.rest().is_empty() { Ok(entries) } else { Err("nothing behind the closing brace") }
 }
 
-/// What is left to be read.
+/// Remaining text to be parsed.
 struct Text<'a>(&'a str);
 
 impl<'a> Text<'a> {
@@ -40,7 +40,7 @@ impl<'a> Text<'a> {
         self.0
     }
 
-    /// Goes past a sign, if it comes next.
+    /// Skips a character if it comes next, and returns true then.
     fn takes(&mut self, sign: char) -> bool {
         let after = self.0.trim_ascii_start().strip_prefix(sign);
         self.0 = after.unwrap_or(self.0);
@@ -51,7 +51,7 @@ impl<'a> Text<'a> {
         if self.takes(sign) { Ok(()) } else { Err(what) }
     }
 
-    /// Text in quotes of either kind, without escapes: no name of a type has any.
+    /// Parses text in single or double quotes, without escapes: type names contain none.
     fn quoted(&mut self) -> Option<String> {
         let quote = self.rest().chars().next().filter(|c| matches!(c, '\'' | '"'))?;
         let (inside, after) = self.0[1..].split_once(quote)?;
@@ -75,17 +75,17 @@ impl<'a> Text<'a> {
         self.quoted().map(Value::Text).ok_or("a text, True, False, a tuple or a list")
     }
 
-    /// The rest of a tuple.
+    /// Parses the rest of a tuple, after its parenthesis.
     fn numbers(&mut self) -> Result<Vec<u64>, &'static str> {
         let mut numbers = Vec::new();
         while !self.takes(')') {
             let rest = self.rest();
             let end = rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len());
-            // What does not fit 64 bits does not fit anything.
+            // Numbers over 64 bits saturate, and are refused later.
             let number = rest.get(..end).filter(|digits| !digits.is_empty()).ok_or("a whole number")?;
             let number = number.parse().unwrap_or(u64::MAX);
             self.0 = &self.0[end..];
-            // Python 2 marks long numbers.
+            // Python 2 appends L to long integers.
             self.takes('L');
             if numbers.len() == MOST_AXES {
                 return Err("at most 64 axes");
@@ -99,7 +99,7 @@ impl<'a> Text<'a> {
         Ok(numbers)
     }
 
-    /// A list, with whatever is in it.
+    /// Skips a list with any content.
     fn list(&mut self) -> Result<Value, &'static str> {
         let mut depth = 0usize;
         let mut quote = None;

@@ -1,16 +1,16 @@
-//! What the axes of an array stand for: the three fastest are a volume, those before it several.
+//! Interpretation of the axes of a NumPy array: the three fastest are a volume, those before count volumes.
 
 use super::super::number::Number;
 use super::super::{Dimension, Endian, LoadError};
 use super::header::Header;
 use crate::data::attempt::{Attempt, quoted};
 
-/// An array as volumes.
+/// Array as one or several volumes.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Grid {
-    /// How many volumes there are, the slowest first.
+    /// Dimensions that count volumes, with their lengths, slowest first.
     pub(super) outer: Vec<(Dimension, u64)>,
-    /// Voxels along x, y, z.
+    /// Voxels along x, y and z.
     pub(super) dims: [u64; 3],
     pub(super) number: Number,
     pub(super) endian: Endian,
@@ -19,7 +19,7 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// Says what the axes stand for; those of one element alone stand for nothing.
+    /// Interprets the axes. Axes of length 1 are dropped while there are more than three.
     pub(super) fn of(attempt: Attempt<'_>, header: &Header) -> Result<Self, LoadError> {
         let (number, endian, mut components) = number_of(&header.descr).ok_or_else(|| {
             attempt.bad_input(
@@ -28,7 +28,7 @@ impl Grid {
                 "convert the array to whole or real numbers of at most 64 bits, for example with astype(numpy.float32)",
             )
         })?;
-        // Slowest first, as they lie in the file.
+        // Slowest first, as in the file.
         let mut axes = header.shape.clone();
         if header.is_fortran {
             axes.reverse();
@@ -69,8 +69,9 @@ impl Grid {
 }
 
 impl Grid {
-    /// True for numbers that look as if they belonged to something else, in an array of so many axes: fewer than 16 along
-    /// one of two are an affine, a matrix or a list of points; 2 by 2 to 4 by 4 of more are matrices in a row.
+    /// True for arrays that are likely no image, given the number of their axes: two axes, one of them shorter than
+    /// 16, are an affine, a matrix or a list of points; more axes that end in 2 by 2 to 4 by 4 are a list of
+    /// matrices.
     pub(super) fn is_table(&self, axes: usize) -> bool {
         const FEWEST_PIXELS: u64 = 16;
         let [x, y, _] = self.dims;
@@ -78,7 +79,7 @@ impl Grid {
     }
 }
 
-/// The number type of a code, its byte order, and how many of them an element has.
+/// Parses a type code: number type, byte order, and number of components per element.
 fn number_of(descr: &str) -> Option<(Number, Endian, usize)> {
     let (endian, code) = match descr.split_at_checked(1)? {
         (">", code) => (Endian::Big, code),

@@ -1,4 +1,4 @@
-//! The header of an array: its type, the order of its axes and its shape.
+//! Header of a NumPy array: type, axis order and shape.
 
 use std::io::Read;
 
@@ -6,25 +6,25 @@ use super::super::LoadError;
 use super::dictionary::{Value, parse};
 use crate::data::attempt::{Attempt, quoted};
 
-/// How every file of an array begins.
+/// Magic bytes of an array file.
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
 
-/// The longest header that is read: NumPy itself reads no longer ones from files that are not trusted.
+/// Maximum length of a header, in bytes; NumPy itself limits headers of untrusted files as well.
 const LONGEST_HEADER: u64 = 64 << 10;
 
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Header {
-    /// The type of the numbers in NumPy's code: `<f4`.
+    /// Type code of the elements, such as `<f4`.
     pub(super) descr: String,
-    /// Whether the first axis is the fastest.
+    /// True if the first axis is the fastest (Fortran order).
     pub(super) is_fortran: bool,
     pub(super) shape: Vec<u64>,
-    /// Bytes before the first number.
+    /// Length of the header, in bytes.
     pub(super) bytes: u64,
 }
 
 impl Header {
-    /// Reads it from the beginning of an array's file.
+    /// Reads the header from the beginning of an array file.
     pub(super) fn read(attempt: Attempt<'_>, content: &mut dyn Read) -> Result<Self, LoadError> {
         let bad = |why: String| attempt.bad_input("header", why, "save the array again with numpy.save");
         let mut exactly = |count: u64| {
@@ -49,7 +49,7 @@ impl Header {
             return Err(bad(format!("a header of {length} bytes is longer than any that describes numbers")));
         }
         let text = exactly(length)?;
-        // Versions before 3 are in Latin-1; names of types and axes are the same in both.
+        // Versions before 3 are in Latin-1; names of types and axes are ASCII in both.
         let text = if version == 3 {
             String::from_utf8_lossy(&text).into_owned()
         } else {

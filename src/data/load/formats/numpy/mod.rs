@@ -1,4 +1,4 @@
-//! NumPy's arrays: one in a file (`.npy`), or several in an archive (`.npz`).
+//! NumPy arrays: one in a file (`.npy`), or several in an archive (`.npz`).
 //!
 //! After the definition at <https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html>, versions 1 to 3.
 
@@ -40,24 +40,24 @@ pub(super) const NPZ: Reader = Reader {
     load: load_archive,
 };
 
-/// How the names of arrays end in an archive.
+/// Extension of arrays in an archive.
 const ENDING: &str = ".npy";
 
 const HELP: &str = "save the array again, or copy the file again";
 
-/// Most arrays of an archive that are looked at.
+/// Maximum number of arrays of an archive whose headers are read.
 const MOST_ARRAYS: usize = 1024;
 
-/// What of an array is read.
+/// Selected volume of an array, and how it is stored.
 struct Wanted {
     stored: Stored,
     extent: Extent,
-    /// Bytes before it, from the beginning of the array's own file.
+    /// Offset of its first voxel in the array's file, in bytes.
     at: u64,
     placement: Placement,
 }
 
-/// Chooses among the volumes of an array.
+/// Selects the volume of an array by the user's choice.
 fn wanted(
     source: &Source<'_>,
     attempt: Attempt<'_>,
@@ -87,7 +87,7 @@ fn wanted(
     Ok(Wanted { stored, extent, at: header.bytes.saturating_add(before), placement })
 }
 
-/// Loads a file of one array.
+/// Loads a file of a single array.
 fn load_array(mut source: Source<'_>) -> Result<Volume, LoadError> {
     let attempt = Attempt { what: "read the NumPy array", path: source.path };
     let header = Header::read(attempt, &mut source.content())?;
@@ -116,14 +116,15 @@ fn load_archive(mut source: Source<'_>) -> Result<Volume, LoadError> {
             Err(error) => refused.push(error),
         }
     }
-    // Beside a volume, matrices and tables are no pictures: an affine, directions, a list of points. One that is named is
-    // meant.
+    // Beside a volume, matrices and tables (an affine, directions, a list of points) are no images. One that the user
+    // has named is still read.
     let named = source.options.choice.array.as_deref();
     let is_table = |header: &Header, grid: &Grid| grid.is_table(header.shape.len());
     if arrays.iter().any(|(_, header, grid)| !is_table(header, grid)) {
         arrays.retain(|(entry, header, grid)| !is_table(header, grid) || named == Some(key(entry).as_str()));
     }
-    // Vectors beside a volume are not offered either; where there is nothing else, why they are no volumes counts.
+    // Nor are one-dimensional arrays offered beside a volume; without any volume, the errors of the arrays are
+    // reported.
     if arrays.is_empty() {
         let count = refused.len();
         return Err(match refused.pop() {
@@ -148,12 +149,12 @@ fn load_archive(mut source: Source<'_>) -> Result<Volume, LoadError> {
     Parts { name, extent, placement, voxels, hints: Hints::default() }.volume(attempt)
 }
 
-/// By what an array is chosen: its name.
+/// Key by which an array is chosen: its name.
 fn key(entry: &Entry) -> String {
     plain(entry.name.trim_end_matches(ENDING), 80)
 }
 
-/// Reads what is wanted of an entry of an archive.
+/// Reads the selected volume of an archive entry.
 fn inflated(
     source: &mut Source<'_>,
     attempt: Attempt<'_>,
@@ -162,7 +163,7 @@ fn inflated(
 ) -> Result<Voxels, LoadError> {
     let Wanted { stored, extent, at, .. } = wanted;
     let needed = (extent.voxels as u64).saturating_mul(stored.bytes_of_voxel()).saturating_add(*at);
-    // Before anything is allocated.
+    // Before memory is allocated.
     if needed > entry.bytes {
         return Err(attempt.bad_input(
             "shape",
@@ -189,7 +190,7 @@ fn inflated(
         }
         fault => fault.into_error(attempt, &layout, "bytes", HELP),
     })?;
-    // Of several volumes in an array only one was read: the checksum is that of all.
+    // The checksum covers the whole array, and can be verified only if all of it was read.
     let is_all = needed == entry.bytes && content.by_ref().read(&mut [0]).is_ok_and(|more| more == 0);
     if is_all && content.crc().sum() != entry.checksum {
         return Err(broken(attempt, entry, "their checksum is another"));

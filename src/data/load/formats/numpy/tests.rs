@@ -1,4 +1,4 @@
-//! Arrays and archives made by hand: every type, order and shape, and headers that lie.
+//! Tests of NumPy arrays and archives: every type, order and shape, and headers with false sizes.
 
 use std::io::Write as _;
 
@@ -149,8 +149,8 @@ fn headers_that_lie_are_refused() {
     assert!(error.to_string().contains("truncated"), "{error}");
 }
 
-/// An archive: names and contents, deflated or not; with sizes behind the entries, as streams are written, or not; with
-/// sizes of 64 bits or not.
+/// Builds a ZIP archive of names and contents: deflated or stored; with sizes after the entries, as streaming writers
+/// do, or before them; with ZIP64 sizes or not.
 fn archive(files: &[(&str, &[u8])], [is_deflated, is_stream, is_large]: [bool; 3]) -> Vec<u8> {
     let (mut bytes, mut lines) = (Vec::new(), Vec::new());
     let number = |value: usize| (value as u32).to_le_bytes();
@@ -243,7 +243,7 @@ fn matrices_and_tables_beside_a_volume_are_no_question() {
     assert_eq!(found.dims(), [4, 4, 1], "what is named is meant");
     let unknown = loaded_as("a.npz", &write(&files), named("mask")).unwrap_err();
     assert!(unknown.to_string().contains("\"mask\" is none"), "{unknown}");
-    // Pictures are offered, and tables where there is nothing else.
+    // Pictures are offered, too, and tables only where there is nothing else.
     let error = loaded(&write(&[("data.npy", &volume), ("image.npy", &picture)])).unwrap_err();
     assert!(matches!(error, LoadError::Several { offers, .. } if offers.len() == 2));
     assert_eq!(loaded(&write(&[("affine.npy", &affine)])).unwrap().dims(), [4, 4, 1]);

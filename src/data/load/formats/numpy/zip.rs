@@ -1,7 +1,7 @@
-//! ZIP archives, as far as NumPy writes them: entries that are stored or deflated.
+//! Reader of ZIP archives in the variants that NumPy writes: entries that are stored or deflated.
 //!
-//! After PKWARE's APPNOTE 6.3, <https://pkware.cachefly.net/webdocs/casestudies/APPNOTE.TXT>; its sections are named below.
-//! Only what the directory at the end says counts. The sizes before the entries, or behind them, may be left open.
+//! After PKWARE's APPNOTE 6.3, <https://pkware.cachefly.net/webdocs/casestudies/APPNOTE.TXT>; its sections are named
+//! below. Only the central directory counts. Sizes before the entries, or after them, may be missing.
 
 use std::io::{self, Read, Seek as _, SeekFrom};
 
@@ -11,54 +11,54 @@ use super::super::LoadError;
 use super::super::input::Input;
 use crate::data::attempt::{Attempt, quoted};
 
-/// Begins each entry (4.3.7).
+/// Signature of a local file header (4.3.7).
 const ENTRY: &[u8] = b"PK\x03\x04";
-/// Begins each line of the directory (4.3.12).
+/// Signature of a central directory header (4.3.12).
 const DIRECTORY_LINE: &[u8] = b"PK\x01\x02";
-/// Begins the end of the directory (4.3.16), and how long that is without its comment.
+/// Signature of the end of central directory record (4.3.16), and its length without the comment.
 const END: &[u8] = b"PK\x05\x06";
 const END_BYTES: usize = 22;
-/// Begins the end of a large archive's directory (4.3.14), and the note before [`END`] that says where it is (4.3.15).
+/// Signatures of the ZIP64 end of central directory record (4.3.14), and of its locator before [`END`] (4.3.15).
 const LARGE_END: &[u8] = b"PK\x06\x06";
 const LARGE_NOTE: &[u8] = b"PK\x06\x07";
 const LARGE_NOTE_BYTES: usize = 20;
-/// What stands for numbers that need 64 bits, and the id of the field that has them (4.5.3).
+/// Placeholder for numbers that need 64 bits, and the id of the extra field that has them (4.5.3).
 const IN_LARGE_FIELD: u64 = u32::MAX as u64;
 const LARGE_FIELD: u64 = 1;
 
-/// The longest directory that is read: that of a hundred thousand entries.
+/// Maximum length of the central directory, in bytes: a hundred thousand entries.
 const LONGEST_DIRECTORY: u64 = 16 << 20;
-/// Deflate makes no more than 1032 bytes of one; a few more for its own words.
+/// Maximum expansion by deflate, which makes at most 1032 bytes of one; the caller adds some for its headers.
 const MOST_INFLATION: u64 = 1032;
 
 const HELP: &str = "save the archive again, or copy the file again";
 
-/// A file in an archive.
+/// File in an archive, by its central directory header.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Entry {
     pub(super) name: String,
-    /// Bytes of its content.
+    /// Uncompressed length, in bytes.
     pub(super) bytes: u64,
-    /// CRC-32 of its content.
+    /// CRC-32 of the uncompressed content.
     pub(super) checksum: u32,
     is_deflated: bool,
-    /// Bytes of it in the archive.
+    /// Compressed length, in bytes.
     stored_bytes: u64,
-    /// Where in the archive it begins.
+    /// Offset of its local header in the archive.
     at: u64,
 }
 
-/// Whether a file begins with an entry whose name has this ending.
+/// Returns true if a file begins with an entry whose name has this extension.
 pub(super) fn begins_with_entry(start: &[u8], ending: &str) -> bool {
     let length = number(start, 26, 2) as usize;
     let name = start.get(30..30 + length);
     start.starts_with(ENTRY) && name.is_some_and(|name| name.ends_with(ending.as_bytes()))
 }
 
-/// All entries of an archive that can be read.
+/// Reads the central directory; returns all entries that are supported.
 ///
 /// # Errors
-/// `BadInput` where it has no directory, or one that cannot be true.
+/// `BadInput` where the directory is missing, or inconsistent.
 pub(super) fn entries(attempt: Attempt<'_>, input: &mut Input) -> Result<Vec<Entry>, LoadError> {
     let bad = |why: &str| attempt.bad_input("directory", why, HELP);
     let (at, length) = directory(attempt, input)?;
@@ -86,10 +86,10 @@ pub(super) fn entries(attempt: Attempt<'_>, input: &mut Input) -> Result<Vec<Ent
         let most = match method {
             0 => stored_bytes,
             8 => stored_bytes.saturating_add(64).saturating_mul(MOST_INFLATION),
-            // Neither stored nor deflated.
+            // Unsupported compression method.
             _ => continue,
         };
-        // The first bit: encrypted.
+        // Bit 0: encrypted.
         if flags & 1 != 0 {
             continue;
         }
@@ -102,7 +102,7 @@ pub(super) fn entries(attempt: Attempt<'_>, input: &mut Input) -> Result<Vec<Ent
     Ok(entries)
 }
 
-/// The content of an entry, inflated: as much as it is said to be, or less.
+/// Opens an entry for reading, inflated; it yields at most its announced length.
 pub(super) fn open<'a>(
     attempt: Attempt<'_>,
     input: &'a mut Input,
@@ -113,7 +113,7 @@ pub(super) fn open<'a>(
         let why = format!("{} is not where the directory of the archive says", quoted(&entry.name));
         return Err(attempt.bad_input("directory", why, HELP));
     }
-    // Its name, and a field that may be longer than in the directory.
+    // The file name, and an extra field whose length may differ from that in the directory.
     let skip = 30 + number(&head, 26, 2) + number(&head, 28, 2);
     input.seek(entry.at.saturating_add(skip)).map_err(|error| attempt.io(error))?;
     let stored = io::Read::by_ref(&mut input.reader).take(entry.stored_bytes);
@@ -124,9 +124,9 @@ pub(super) fn open<'a>(
     })
 }
 
-/// Where the directory begins, and its length.
+/// Finds the central directory; returns its offset and its length.
 fn directory(attempt: Attempt<'_>, input: &mut Input) -> Result<(u64, u64), LoadError> {
-    // A comment behind it has at most 65535 bytes.
+    // A comment after the record has at most 65535 bytes.
     let most = (END_BYTES + LARGE_NOTE_BYTES) as u64 + 0xffff;
     let from = input.len.saturating_sub(most);
     let tail = read_at(input, from, most).map_err(|error| attempt.io(error))?;
@@ -145,7 +145,7 @@ fn directory(attempt: Attempt<'_>, input: &mut Input) -> Result<(u64, u64), Load
     Ok((at, length))
 }
 
-/// The 64-bit numbers in the field for them, in the order of those that need it.
+/// Numbers in the ZIP64 extra field, in the order of the fields that they replace.
 fn large_numbers(mut extra: &[u8]) -> impl Iterator<Item = u64> + use<> {
     let mut found = Vec::new();
     while extra.len() >= 4 {
@@ -159,13 +159,13 @@ fn large_numbers(mut extra: &[u8]) -> impl Iterator<Item = u64> + use<> {
     found.into_iter()
 }
 
-/// A little-endian number of so many bytes; 0 where there are not so many.
+/// Decodes a little-endian number of `width` bytes; 0 where the slice is too short.
 fn number(bytes: &[u8], at: usize, width: usize) -> u64 {
     let bytes = bytes.get(at..at + width).unwrap_or_default();
     bytes.iter().rev().fold(0, |sum, &byte| sum << 8 | u64::from(byte))
 }
 
-/// Up to so many bytes from a place on.
+/// Reads up to `count` bytes from an offset.
 fn read_at(input: &mut Input, at: u64, count: u64) -> io::Result<Vec<u8>> {
     input.reader.seek(SeekFrom::Start(at))?;
     let mut bytes = Vec::new();

@@ -1,4 +1,4 @@
-//! Volumes whose slices are pictures: the pages of a file, or files of their own.
+//! Volumes whose slices are pictures: pages of one file, or files of their own.
 
 mod pile;
 pub(super) mod slices;

@@ -1,6 +1,6 @@
-//! Slices that lie one by one, in a file or in files of their own, to the voxels of a volume.
+//! Assembly of a volume from slices that are decoded one by one, from one file or from many.
 //!
-//! Some are decoded at a time, on all cores; besides the volume itself no more than those are in memory.
+//! Several slices are decoded at a time, on all cores; besides the volume only these are in memory.
 
 use std::io::{self, Read};
 
@@ -10,14 +10,14 @@ use crate::data::load::reading::samples::{Fault, Layout};
 use crate::data::load::reading::voxels::{Meant, Voxels};
 use crate::data::load::{LoadControl, LoadError};
 
-/// Bytes of slices that are decoded at a time: enough for all cores, little beside a volume.
+/// Bytes of slices that are decoded at a time: enough for all cores, small against a volume.
 const AT_ONCE_BYTES: u64 = 32 << 20;
 
-/// Reads what is kept of the voxels of slices, each stored as `stored` says. `decode` gives the bytes of some of them, by
-/// their numbers; those of which nothing is kept are not asked for.
+/// Reads the selected voxels of slices, each stored as `stored` gives. `decode` returns the bytes of slices, given by
+/// index; slices without selected voxels are not requested.
 ///
 /// # Errors
-/// What `decode` says; `BadInput` where a slice has other bytes than it should, `Limit` without memory.
+/// Errors of `decode`; `BadInput` where a slice has an unexpected length, `Limit` where memory is exhausted.
 pub(super) fn read_pile(
     attempt: Attempt<'_>,
     stored: &Stored,
@@ -43,19 +43,19 @@ pub(super) fn read_pile(
     }
 }
 
-/// The bytes of all slices, one after the other.
+/// Reader of the concatenated bytes of all slices.
 struct Pile<F> {
     decode: F,
-    /// Those that are needed.
+    /// Indices of the slices that are needed.
     slices: Vec<usize>,
     at_once: usize,
-    /// The one of them after those that are ready.
+    /// Position in `slices` after those that are ready.
     next: usize,
-    /// What is to be handed out, the next one last.
+    /// Decoded slices in reverse order, so that the next one is last.
     ready: Vec<Vec<u8>>,
-    /// Bytes of the next one that were handed out.
+    /// Bytes of the next slice that were handed out.
     at: usize,
-    /// Why there are no more.
+    /// Error that ended the stream, since [`Read`] can only return [`io::Error`].
     failed: Option<LoadError>,
 }
 

@@ -1,9 +1,10 @@
-//! The packing of PVM volumes: runs of differences, each run with as many bits as its largest needs.
+//! Decoder of packed PVM volumes (DDS): runs of differences, each run with as many bits as its largest difference
+//! needs.
 //!
-//! Behind the mark come bits, the highest of each byte first: 2 with the number of interleaved bytes less 1, 16 with the
-//! length of a line of voxels less 1, then runs. A run is 7 bits with its length, 3 with the bits of each difference, and
-//! the differences, offset by half of what the bits can say. A run of length 0 ends it. A byte is its predecessor, plus
-//! the slope of the line before at this place, plus the difference.
+//! A bit stream follows the magic, most significant bit first: 2 bits with the number of interleaved bytes less 1, 16
+//! with the length of a line of voxels less 1, then runs. A run is 7 bits with its length, 3 with the width of a
+//! difference, and the differences, offset by half their range. A run of length 0 ends the stream. A byte is its
+//! predecessor, plus the slope of the line before at this place, plus the difference.
 
 use std::io::Read;
 
@@ -11,19 +12,20 @@ use super::super::samples::{BLOCK_BYTES, Fault, fill, is_corruption};
 use super::super::{LoadControl, LoadError};
 use crate::data::attempt::{Attempt, human_bytes};
 
-/// The first version interleaves all bytes at once, the second this many times the number of them.
+/// Magic bytes of the two versions. The first de-interleaves all bytes at once, the second in blocks of this size
+/// times the number of interleaved bytes.
 const MARK: &[u8] = b"DDS v3d\n";
 const MARK_OF_BLOCKS: &[u8] = b"DDS v3e\n";
 const BLOCK: usize = 1 << 24;
 
 const HELP: &str = "copy or download the file again";
 
-/// Whether content that begins like this is packed.
+/// Returns true if content with this beginning is packed.
 pub(super) fn is_packed(start: &[u8]) -> bool {
     start.starts_with(MARK) || start.starts_with(MARK_OF_BLOCKS)
 }
 
-/// Unpacks all, at most so many bytes.
+/// Unpacks the whole content, to at most `most` bytes.
 pub(super) fn unpack(
     attempt: Attempt<'_>,
     content: &mut dyn Read,
@@ -58,7 +60,7 @@ pub(super) fn unpack(
         })
 }
 
-/// The bytes that differences make, and how many of them are interleaved.
+/// Decodes the differences; returns the bytes and the number of interleaved ones.
 fn differences(bits: &mut Bits<'_>, most: u64) -> Result<(Vec<u8>, usize), Fault> {
     let interleaved = bits.take(2)? as usize + 1;
     let line = bits.take(16)? as usize + 1;
@@ -66,14 +68,14 @@ fn differences(bits: &mut Bits<'_>, most: u64) -> Result<(Vec<u8>, usize), Fault
     let mut last = 0u8;
     loop {
         let run = match bits.take(7) {
-            // Some files lack the end of the last run. What is missing besides is seen when voxels are counted.
+            // Some files lack the final run. Other missing data are noticed when voxels are counted.
             Err(Fault::Short { .. }) => 0,
             run => run? as usize,
         };
         if run == 0 {
             return Ok((bytes, interleaved));
         }
-        // 1 bit is never used: 2 take its place.
+        // A width of 1 bit is never used: code 1 means 2 bits.
         let width = match bits.take(3)? {
             0 => 0,
             n => n + 1,
@@ -88,7 +90,7 @@ fn differences(bits: &mut Bits<'_>, most: u64) -> Result<(Vec<u8>, usize), Fault
         for _ in 0..run {
             let difference = (bits.take(width)?.wrapping_sub(half)) as u8;
             let at = bytes.len();
-            // The line before has a slope here from its second byte on.
+            // The previous line has a slope here from its second byte on.
             let slope =
                 if line > 1 && at > line { bytes[at - line].wrapping_sub(bytes[at - line - 1]) } else { 0 };
             last = last.wrapping_add(slope).wrapping_add(difference);
@@ -97,7 +99,7 @@ fn differences(bits: &mut Bits<'_>, most: u64) -> Result<(Vec<u8>, usize), Fault
     }
 }
 
-/// Brings bytes into their order that lie apart: first all first ones of each voxel, then all second ones, in each block.
+/// Interleaves the bytes of voxels again: in each block all first bytes come first, then all second ones.
 fn in_order(
     bytes: Vec<u8>,
     interleaved: usize,
@@ -122,7 +124,7 @@ fn in_order(
     Ok(ordered)
 }
 
-/// Bits from bytes, the highest first.
+/// Bit reader, most significant bit first.
 struct Bits<'a> {
     content: &'a mut dyn Read,
     control: &'a LoadControl,
@@ -133,13 +135,13 @@ struct Bits<'a> {
 }
 
 impl Bits<'_> {
-    /// Bytes before the first bit.
+    /// Reads whole bytes, before any bits are taken.
     fn read(&mut self, bytes: &mut [u8]) -> Result<(), Fault> {
         let got = fill(&mut self.content, bytes, self.control)?;
         if got < bytes.len() { Err(Fault::Short { got: 0 }) } else { Ok(()) }
     }
 
-    /// A number of at most 16 bits.
+    /// Reads a number of at most 16 bits.
     fn take(&mut self, width: u32) -> Result<u32, Fault> {
         while self.count < width {
             if self.at == self.block.len() {

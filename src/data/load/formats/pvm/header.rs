@@ -1,4 +1,4 @@
-//! The lines at the beginning of a PVM volume, and the words behind the voxels of its third version.
+//! Header lines of a PVM volume, and the texts after the voxels of version 3.
 
 use super::super::LoadError;
 use super::super::number::Part;
@@ -6,25 +6,25 @@ use super::super::placement::Placement;
 use crate::data::attempt::{Attempt, quoted};
 use crate::data::{Hints, Modality};
 
-/// The longest header that is looked for.
+/// Maximum length of a header, in bytes.
 pub(super) const MOST_BYTES: usize = 1024;
 
-/// How volumes of each version begin.
+/// Magic bytes of each version.
 const MARKS: [&[u8]; 3] = [b"PVM\n", b"PVM2\n", b"PVM3\n"];
 
-/// Whether content that begins like this is a volume.
+/// Returns true if content with this beginning is a PVM volume.
 pub(super) fn is_pvm(start: &[u8]) -> bool {
     MARKS.iter().any(|mark| start.starts_with(mark))
 }
 
 pub(super) struct Header {
     version: usize,
-    /// Voxels along x, y, z.
+    /// Voxels along x, y and z.
     pub(super) dims: [u64; 3],
     scale: [f64; 3],
-    /// Bytes of each voxel.
+    /// Bytes of each voxel: 2 are a 16-bit number, 3 and 4 a colour.
     pub(super) components: usize,
-    /// Bytes before the first voxel.
+    /// Length of the header, in bytes.
     pub(super) bytes: usize,
 }
 
@@ -59,12 +59,12 @@ impl Header {
         Ok(Self { version, dims, scale, components, bytes: lines.at })
     }
 
-    /// Distances have no unit: often the shortest is 1.
+    /// Placement by relative distances: they have no unit, and often the shortest is 1.
     pub(super) fn placement(&self, part: Part) -> Placement {
         Placement::spaced(self.scale).of_unknown_scale().remarked(part.remark())
     }
 
-    /// What is said behind the voxels: description, courtesy, parameters and comment, each with a zero behind it.
+    /// Metadata after the voxels: description, courtesy, parameters and comment, each ended by a zero byte.
     pub(super) fn hints(&self, after: &[u8]) -> Hints {
         let mut hints = Hints::default();
         if self.version == 3 {
@@ -81,7 +81,7 @@ impl Header {
     }
 }
 
-/// Three numbers in a line.
+/// Parses the three numbers of a line.
 fn three<T: std::str::FromStr>(line: &str) -> Option<[T; 3]> {
     let mut numbers = line.split_whitespace().map(|word| word.parse().ok());
     Some([numbers.next()??, numbers.next()??, numbers.next()??])
@@ -93,7 +93,7 @@ struct Lines<'a> {
 }
 
 impl Lines<'_> {
-    /// The next line that ends.
+    /// Next line that is ended by a newline.
     fn next(&mut self) -> Option<String> {
         let rest = self.content.get(self.at..)?;
         let end = rest.iter().position(|&byte| byte == b'\n')?;

@@ -1,5 +1,5 @@
-//! PVM, the volumes of Stefan Röttger's library: a few lines of text, then voxels of one or two bytes, the high one
-//! first. Mostly the whole is packed, which `dds` undoes.
+//! PVM, the volume format of Stefan Röttger's library: a few lines of text, then voxels of one or two bytes,
+//! big-endian. Mostly the whole file is packed, which `dds` undoes.
 //!
 //! After the description of the formats at <http://schorsch.efi.fh-nuernberg.de/data/volume/>.
 
@@ -32,7 +32,7 @@ fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
     let attempt = Attempt { what: "read the PVM volume", path: source.path };
     let control = source.control;
     let budget = source.options.memory_budget_bytes;
-    // What is packed has no length before it is unpacked.
+    // The size of packed data is unknown before they are unpacked.
     let unpacked = if dds::is_packed(source.start.bytes()) {
         let most = budget.saturating_add(MOST_BYTES as u64);
         Some(dds::unpack(attempt, &mut source.content(), most, control)?)
@@ -46,7 +46,7 @@ fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
     };
     let part = source.part(attempt, components, components > 1)?;
     let stored = Stored { number, endian: Endian::Big, components, part };
-    // What is packed is unpacked as a whole, as far as the budget reaches.
+    // Packed data are unpacked as a whole, within the budget.
     let room = source.options.room(source.control);
     let extent = Extent::checked(attempt, "dimensions", header.dims, stored.voxel_type(), room)?;
     let (voxels, after) = match unpacked {

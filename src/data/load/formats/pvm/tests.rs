@@ -1,4 +1,4 @@
-//! PVM volumes made by hand, packed and not, and packings that lie.
+//! Tests of PVM volumes, packed and unpacked, and of packings with false sizes.
 
 use glam::DVec3;
 use tempfile::TempDir;
@@ -20,7 +20,7 @@ fn loaded(bytes: &[u8]) -> Result<Volume, LoadError> {
     loaded_with(bytes, 1 << 20)
 }
 
-/// Bits, the highest of each byte first.
+/// Bit writer, most significant bit first.
 #[derive(Default)]
 struct Bits(Vec<bool>);
 
@@ -36,7 +36,8 @@ impl Bits {
     }
 }
 
-/// Packs as the format is described: runs of up to 100 differences with as many bits as they need.
+/// Packs content as the format description has it: runs of up to 100 differences, each run with the bits that it
+/// needs.
 fn packed(content: &[u8], interleaved: usize, line: usize, block: usize) -> Vec<u8> {
     let mark: &[u8] = if block == usize::MAX { b"DDS v3d\n" } else { b"DDS v3e\n" };
     let apart: Vec<u8> = content
@@ -98,7 +99,7 @@ fn every_version_is_read_packed_or_not() {
             assert_eq!(volume.hints().modality == Modality::Ct, is_told);
         }
     }
-    // Without the run that ends it: 7 bits and what fills up the last 32.
+    // Without the run that ends the data: 7 bits, and the padding of the last 32.
     let whole = [b"PVM\n4 3 2\n1\n", &bytes[..24]].concat();
     let endless = packed(&whole, 1, 4, usize::MAX);
     let cut = endless.iter().rposition(|&byte| byte != 0).unwrap() + 1;

@@ -1,4 +1,4 @@
-//! The bytes of a file of bare voxels, read where they are wanted: any part of a file, or the start of a compressed one.
+//! Random access to the bytes of a raw file: any part of an uncompressed file, or the beginning of a compressed one.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read as _, Seek as _, SeekFrom};
@@ -8,24 +8,25 @@ use std::sync::Arc;
 use super::super::content::members::GzipMembers;
 use super::super::input::is_gzip;
 
-/// Bytes of a compressed file that are inflated: at about 300 MB/s they take a tenth of a second, and they hold 100
+/// Bytes of a compressed file that are inflated: at about 300 MB/s they take a tenth of a second, and hold about 100
 /// slices of 512 × 512 voxels of one byte.
 const INFLATED: u64 = 24 << 20;
 
-/// Files up to this length are read at once: less work than a few hundred small reads.
+/// Maximum length of files that are read as a whole, in bytes: less work than a few hundred small reads.
 const SMALL: u64 = 8 << 20;
 
-/// Bytes at the end of a compressed file that are searched for its length: blocks of tapes have 64 KiB mostly.
+/// Bytes at the end of a compressed file that are searched for its length, after padding: blocks of tapes mostly have
+/// 64 KiB.
 const PADDING: u64 = 1 << 18;
 
-/// What there is of the bytes.
+/// Source of the bytes: the file, or a buffer in memory.
 #[derive(Debug)]
 enum Held {
     File(File),
     Start(Arc<[u8]>),
 }
 
-/// The bytes of a file of bare voxels, after inflating.
+/// Bytes of a raw file, inflated where it is compressed.
 #[derive(Debug)]
 pub struct RawBytes {
     held: Held,
@@ -35,10 +36,10 @@ pub struct RawBytes {
 }
 
 impl RawBytes {
-    /// Opens a file, and inflates the start of a compressed one.
+    /// Opens a file, and inflates the beginning of a compressed one.
     ///
     /// # Errors
-    /// When it cannot be read, or is no regular file.
+    /// When it cannot be read, or is not a regular file.
     pub fn open(path: &Path) -> io::Result<Self> {
         let mut file = File::open(path)?;
         let metadata = file.metadata()?;
@@ -65,8 +66,8 @@ impl RawBytes {
         Ok(Self::from(all))
     }
 
-    /// The start of a compressed file. How long all of it is say its last four bytes, modulo 2^32 (RFC 1952). Where zeros
-    /// fill the file up they lie before these: of so long a file the last of the four is hardly zero itself.
+    /// Inflates the beginning of a compressed file. Its last four bytes give the uncompressed length modulo 2^32 (RFC
+    /// 1952). Zero padding after them is skipped: for so long a file their last byte is hardly zero itself.
     fn inflate(mut file: File, file_bytes: u64) -> io::Result<Self> {
         let mut end = vec![0; PADDING.min(file_bytes) as usize];
         file.seek(SeekFrom::Start(file_bytes - end.len() as u64))?;
@@ -76,7 +77,7 @@ impl RawBytes {
         file.seek(SeekFrom::Start(0))?;
         let mut start = Vec::new();
         let mut inflated = GzipMembers::new(BufReader::with_capacity(1 << 18, file)).take(INFLATED);
-        // What comes before damage can be shown all the same.
+        // Bytes before a damaged part are still useful.
         let is_whole = inflated.read_to_end(&mut start).is_ok() && (start.len() as u64) < INFLATED;
         let readable = start.len() as u64;
         if is_whole {
@@ -87,32 +88,32 @@ impl RawBytes {
         Ok(Self { held: Held::Start(start.into()), readable, length: said + (wraps << 32), is_exact: false })
     }
 
-    /// Whether nothing can be read.
+    /// Returns true if no byte can be read.
     pub fn is_empty(&self) -> bool {
         self.readable == 0
     }
 
-    /// Whether all that can be read is in memory.
+    /// Returns true if all readable bytes are in memory.
     pub(super) fn is_held(&self) -> bool {
         matches!(self.held, Held::Start(_))
     }
 
-    /// How many bytes can be read: all, or the start of a compressed file.
+    /// Number of bytes that can be read: all, or the beginning of a compressed file.
     pub fn readable(&self) -> u64 {
         self.readable
     }
 
-    /// How many bytes there are; of a long compressed file, what its end says.
+    /// Uncompressed length in bytes; for a long compressed file as its trailer gives it.
     pub fn length(&self) -> u64 {
         self.length
     }
 
-    /// Whether the length was counted, not only said.
+    /// Returns true if the length was counted, not taken from the gzip trailer.
     pub fn is_exact(&self) -> bool {
         self.is_exact
     }
 
-    /// Reads from a place on; how many bytes there were before the end.
+    /// Reads from an offset; returns the number of bytes read before the end.
     ///
     /// # Errors
     /// When the file cannot be read.
@@ -139,7 +140,7 @@ impl From<Vec<u8>> for RawBytes {
     }
 }
 
-/// Reads until a buffer is full or the file ends.
+/// Reads until the buffer is full or the file ends.
 fn read_full(file: &mut File, buffer: &mut [u8]) -> io::Result<usize> {
     let mut count = 0;
     while count < buffer.len() {

@@ -1,4 +1,4 @@
-//! How bare voxels are stored, whoever has said it, and reading them.
+//! Storage of raw voxels, from any source of information, and reading of them.
 
 use super::super::number::{Number, Stored};
 use super::super::placement::{Parts, Placement};
@@ -9,30 +9,30 @@ use super::super::{Dimension, Endian, LoadError};
 use crate::data::attempt::{Attempt, Extent};
 use crate::data::{Hints, Volume, VoxelType};
 
-/// A header longer than this is not a header: the suggestion of `--offset` would mislead.
+/// Maximum length of a header in bytes for which `--offset` is suggested: a longer excess is no header.
 const LONGEST_HEADER_BYTES: u64 = 1 << 20;
 
-/// How bare voxels are stored, and what else is known of them.
+/// Storage of raw voxels, with their placement and metadata.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Form {
-    /// Voxels along x, y, z.
+    /// Voxels along x, y and z.
     pub(super) dims: [u64; 3],
-    /// Who has said that.
+    /// Source of the dimensions, for messages.
     pub(super) dims_field: &'static str,
     pub(super) number: Number,
     pub(super) components: usize,
     pub(super) is_color: bool,
     pub(super) endian: Endian,
-    /// Bytes before the first voxel.
+    /// Bytes before the first voxel; `None` if not given.
     pub(super) offset: Option<u64>,
     pub(super) placement: Placement,
-    /// Volumes, one behind the other.
+    /// Number of consecutive volumes in the file.
     pub(super) frames: u64,
     pub(super) hints: Hints,
 }
 
 impl Form {
-    /// Of one number for each voxel, little-endian, where nothing else is known.
+    /// Creates the default: scalar, little-endian, one volume, unknown placement.
     pub(super) fn new(dims: [u64; 3], dims_field: &'static str, number: Number) -> Self {
         Self {
             dims,
@@ -48,7 +48,7 @@ impl Form {
         }
     }
 
-    /// Reads voxels that are stored like that and fill a file.
+    /// Reads voxels of this layout, which fill the file.
     pub(super) fn read(
         self,
         mut source: Source<'_>,
@@ -66,7 +66,7 @@ impl Form {
         let offset = self.offset.unwrap_or(0);
         let at = offset.saturating_add(bytes.saturating_mul(frame as u64));
 
-        // Voxels may begin with gzip's magic by chance: a file of the right size is not compressed.
+        // Voxels may begin with gzip's magic by chance: a file of exactly the right size is not compressed.
         let fits_exactly = offset.checked_add(all_bytes) == Some(source.input.len);
         let zipped_name = source.path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gz"));
         let voxels = if source.start.is_gzip() && (zipped_name || !fits_exactly) {
@@ -82,7 +82,7 @@ impl Form {
         parts.volume_or(attempt, help)
     }
 
-    /// Checks that a file of `len` bytes holds the voxels and nothing but them and the offset.
+    /// Checks that a file of `len` bytes holds exactly the offset and the voxels.
     fn check_length(
         &self,
         attempt: Attempt<'_>,
@@ -117,7 +117,7 @@ impl Form {
     }
 }
 
-/// Reads voxels as they are, though they may look compressed.
+/// Reads voxels as stored, although they may look compressed.
 fn read_plain(
     source: &mut Source<'_>,
     attempt: Attempt<'_>,

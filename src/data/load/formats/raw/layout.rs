@@ -1,4 +1,4 @@
-//! How a file of bare voxels is stored: what can be guessed of it, and the header that says it for good.
+//! Layout of raw files: guesses by name and length, and NRRD headers that record it permanently.
 
 use std::io::Read as _;
 use std::path::Path;
@@ -9,42 +9,42 @@ use super::said::Said;
 use super::{RawFormat, name, sidecar};
 use crate::data::VoxelType;
 
-/// Everything that must be known of a file of bare voxels.
+/// Complete description of how a raw file stores its voxels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RawLayout {
-    /// Voxels along x, y, z.
+    /// Voxels along x, y and z.
     pub dims: [usize; 3],
-    /// The number type.
+    /// Number type of the voxels.
     pub voxel_type: VoxelType,
-    /// Distance between voxel centres, where it is known.
+    /// Distance between voxel centres in millimetres, where it is known.
     pub spacing_mm: Option<[f64; 3]>,
-    /// The byte order.
+    /// Byte order of the voxels.
     pub endian: Endian,
-    /// Bytes before the first voxel, after inflating.
+    /// Bytes before the first voxel, in the uncompressed file.
     pub offset: u64,
 }
 
-/// What can be told of a file without knowing how it is stored.
+/// Guess of a raw file's layout, and the facts behind it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RawGuess {
-    /// The best guess.
+    /// Most likely layout by name and length.
     pub layout: RawLayout,
-    /// Length of the file.
+    /// Length of the file, in bytes.
     pub file_bytes: u64,
-    /// Whether it is compressed, so that its length says nothing.
+    /// True if it is compressed, so that its length carries no information.
     pub is_gzip: bool,
-    /// What its name says.
+    /// Layout hints in its name.
     pub said: Said,
 }
 
 impl RawLayout {
-    /// Bytes of a file that is stored like that and not compressed; `None` beyond 64 bits.
+    /// Length in bytes of an uncompressed file with this layout; `None` beyond 64 bits.
     pub fn file_bytes(&self) -> Option<u64> {
         let voxels = self.dims.iter().try_fold(1u64, |product, &n| product.checked_mul(n as u64))?;
         voxels.checked_mul(self.voxel_type.bytes() as u64)?.checked_add(self.offset)
     }
 
-    /// As the options of a reader.
+    /// Converts to the options of the RAW reader.
     pub fn format(&self) -> RawFormat {
         RawFormat {
             dims: Some(self.dims),
@@ -55,7 +55,7 @@ impl RawLayout {
         }
     }
 
-    /// A detached NRRD header for a data file in the same folder: every program that reads NRRD then knows.
+    /// Text of a detached NRRD header for a data file in the same folder, which lets every NRRD reader open it.
     pub fn header(&self, data_file: &str, is_gzip: bool) -> String {
         let [x, y, z] = self.dims;
         let spacings = self.spacing_mm.map_or(String::new(), |[sx, sy, sz]| {
@@ -78,7 +78,8 @@ impl RawLayout {
         )
     }
 
-    /// What the name and the length of a file suggest; `None` for NRRD and for descriptions, which need no guess.
+    /// Guesses the layout by the name and the length of a file; `None` for NRRD and for descriptions, which need no
+    /// guess.
     ///
     /// # Errors
     /// When the file cannot be read.
@@ -119,10 +120,10 @@ const TYPE_WORDS: [(&str, VoxelType); 13] = [
     ("float", VoxelType::F32),
 ];
 
-/// Types by how often they are met.
+/// Number types in order of frequency, one for each size.
 const USUAL: [VoxelType; 4] = [VoxelType::U8, VoxelType::U16, VoxelType::F32, VoxelType::F64];
 
-/// What is offered when nothing is known.
+/// Default dimensions where nothing is known.
 const NO_IDEA: [usize; 3] = [256; 3];
 
 fn type_said(name: &str) -> Option<VoxelType> {
@@ -132,13 +133,13 @@ fn type_said(name: &str) -> Option<VoxelType> {
 fn guess_from(name: &str, length: Option<u64>) -> ([usize; 3], VoxelType) {
     let said = type_said(name);
     if let Some(dims) = three_numbers(name) {
-        // Below 10¹⁵.
+        // At most 10¹⁵, so that the product cannot overflow.
         let voxels: u64 = dims.iter().map(|&n| n as u64).product();
         let fitting = |t: &VoxelType| length == Some(voxels.saturating_mul(t.bytes() as u64));
         let voxel_type = said.or_else(|| USUAL.into_iter().find(fitting)).unwrap_or(VoxelType::U8);
         return (dims, voxel_type);
     }
-    // As many voxels along all axes.
+    // Equal numbers of voxels along all axes.
     let cube = |voxel_type: VoxelType| {
         let voxels = length? / voxel_type.bytes() as u64;
         let n = (voxels as f64).cbrt().round() as u64;
@@ -149,7 +150,7 @@ fn guess_from(name: &str, length: Option<u64>) -> ([usize; 3], VoxelType) {
     types.into_iter().find_map(cube).unwrap_or((NO_IDEA, said.unwrap_or(VoxelType::U8)))
 }
 
-/// Three numbers in a row with an `x` or an underscore between, each at most a hundred thousand.
+/// Finds three consecutive numbers, each at most a hundred thousand, between separators such as `x` or underscore.
 fn three_numbers(name: &str) -> Option<[usize; 3]> {
     let pieces: Vec<Option<usize>> = name
         .split(['x', '_', '-', '.', ' '])

@@ -1,5 +1,5 @@
-//! RAW: voxels and nothing else, x fastest. How many and of which type say the options, a small file beside them, or their
-//! own name.
+//! RAW files: voxels without a header, x fastest. Their number and type are given by options, by a companion file, or
+//! by the file name.
 
 mod bytes;
 mod form;
@@ -27,18 +27,18 @@ pub use said::Said;
 pub(super) use sidecar::{DAT, INI, IVF};
 pub use slices::{MiddleSlices, Slice, middle_slices};
 
-/// How a RAW file is stored. What is given overrides what the file's name, or a file beside it, says.
+/// Options for the layout of a RAW file. They override the file name and a companion file.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RawFormat {
-    /// Voxels along x, y, z (`--dims`).
+    /// Voxels along x, y and z (`--dims`).
     pub dims: Option<[usize; 3]>,
-    /// The number type (`--type`).
+    /// Number type of the voxels (`--type`).
     pub voxel_type: Option<VoxelType>,
-    /// Distance between voxel centres along x, y, z in millimetres (`--spacing`), else nobody knows.
+    /// Distance between voxel centres along x, y and z, in millimetres (`--spacing`); unknown if not given.
     pub spacing_mm: Option<[f64; 3]>,
-    /// The byte order (`--endian`), else little.
+    /// Byte order (`--endian`); little-endian if not given.
     pub endian: Option<Endian>,
-    /// Bytes before the first voxel, after inflating (`--offset`), else 0.
+    /// Bytes before the first voxel, in the uncompressed file (`--offset`); 0 if not given.
     pub offset: Option<u64>,
 }
 
@@ -47,7 +47,7 @@ pub(super) const READER: Reader =
 
 const HELP: &str = "check --dims, --type and --endian";
 
-/// Whether a file's name, or a file beside it, says how its voxels are stored.
+/// Returns true if the name of a file, or a companion file, describes its voxels.
 pub(super) fn is_described(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     name::parse(&name, None).is_some() || sidecar::beside(path).is_some()
@@ -69,13 +69,13 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     overridden(attempt, form, &source.options.raw)?.read(source, attempt, name, HELP)
 }
 
-/// The length of the voxels, where it says something.
+/// Number of bytes of voxels, unless the file is compressed.
 fn unpacked_length(source: &Source<'_>) -> Option<u64> {
     let offset = source.options.raw.offset.unwrap_or(0);
     (!source.start.is_gzip()).then(|| source.input.len.checked_sub(offset)).flatten()
 }
 
-/// What a file beside a RAW file says of it, unless the options say enough.
+/// Layout by a companion file, unless the options give the dimensions.
 fn sidecar_form(
     attempt: Attempt<'_>,
     source: &Source<'_>,
@@ -95,7 +95,7 @@ fn sidecar_form(
     }
 }
 
-/// What options and name say.
+/// Layout by the options and the file name.
 fn form_of(
     attempt: Attempt<'_>,
     options: &LoadOptions,
@@ -132,7 +132,7 @@ fn form_of(
     Ok(form)
 }
 
-/// A form with what the options say in place of what it says.
+/// Replaces properties of a layout by the options that are given.
 fn overridden(attempt: Attempt<'_>, mut form: Form, format: &RawFormat) -> Result<Form, LoadError> {
     if let Some(dims) = format.dims {
         (form.dims, form.dims_field) = (dims.map(|n| n as u64), "--dims");
@@ -160,7 +160,7 @@ fn overridden(attempt: Attempt<'_>, mut form: Form, format: &RawFormat) -> Resul
     Ok(form)
 }
 
-/// Whether two paths end in the same name, which some systems write in other letters.
+/// Compares the file name of a path with a name that may have folders, ignoring case, since some systems do.
 fn has_name(path: &Path, name: &str) -> bool {
     let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
     path.file_name().is_some_and(|file| file.to_string_lossy().eq_ignore_ascii_case(last))

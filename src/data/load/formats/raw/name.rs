@@ -1,33 +1,34 @@
-//! What the name of a RAW file says: `skull_256x256x256_uint8.raw`, as in the `OpenSciVis` datasets, and what comes near.
+//! Parser of layouts in the names of RAW files: `skull_256x256x256_uint8.raw`, as in the `OpenSciVis` datasets, and
+//! variants.
 
 use super::super::Endian;
 use crate::data::VoxelType;
 
-/// What was read from a name.
+/// Layout parsed from a file name.
 #[derive(Debug, PartialEq)]
 pub(super) struct Named {
-    /// What comes before the dimensions; may be empty.
+    /// Part before the dimensions; may be empty.
     pub(super) name: String,
     pub(super) dims: [u64; 3],
     pub(super) voxel_type: Option<VoxelType>,
-    /// Whether only the length of the file says the type.
+    /// True if the type is only inferred from the length of the file.
     pub(super) is_type_guessed: bool,
     pub(super) endian: Option<Endian>,
 }
 
-/// Types by how often they are met, one for each size.
+/// Number types in order of frequency, one for each size.
 const USUAL: [VoxelType; 4] = [VoxelType::U8, VoxelType::U16, VoxelType::F32, VoxelType::F64];
 
-/// What separates words in names.
+/// Separators of words in names.
 const BETWEEN: [char; 11] = ['_', '-', '.', ' ', '(', ')', '[', ']', ',', '+', '='];
 
-/// Reads a name, with the length of the voxels where it is known.
+/// Parses a file name; `length` is the number of bytes of the voxels, where it is known.
 pub(super) fn parse(file_name: &str, length: Option<u64>) -> Option<Named> {
     let base = strip_ending(file_name, ".gz").unwrap_or(file_name);
     let base = [".raw", ".dat", ".bin"].iter().find_map(|ending| strip_ending(base, ending)).unwrap_or(base);
     let words = words(base);
     let type_of = |(_, word): &(usize, &str)| type_and_order(word);
-    // Words behind the dimensions count first: before them is a name, which may hold any word.
+    // Words after the dimensions take precedence: before them is a name, which may contain any word.
     let said_near = |at: usize| words[at..].iter().chain(&words[..at]).find_map(type_of);
     let order_near = |at: usize| words[at..].iter().find_map(|(_, word)| order(word));
 
@@ -44,7 +45,7 @@ pub(super) fn parse(file_name: &str, length: Option<u64>) -> Option<Named> {
         let endian = said.and_then(|(_, endian)| endian).or_else(|| order_near(at));
         return Some(named(base, words[at].0, dims, voxel_type, said.is_none(), endian));
     }
-    // Three numbers in a row may be a date: they must make just the length.
+    // Three separate numbers may be a date: they count only if they match the length exactly.
     (0..words.len().checked_sub(2)?).find_map(|at| {
         let dims = three(words[at..at + 3].iter().map(|(_, word)| *word))?;
         let said = said_near(at);
@@ -70,7 +71,7 @@ fn named(
     Named { name, dims, voxel_type, is_type_guessed: is_type_unsaid && voxel_type.is_some(), endian }
 }
 
-/// Words with the places where they begin.
+/// Splits a name into words, with their byte offsets.
 fn words(base: &str) -> Vec<(usize, &str)> {
     let mut words = Vec::new();
     let mut start = 0;
@@ -78,20 +79,20 @@ fn words(base: &str) -> Vec<(usize, &str)> {
         if !piece.is_empty() {
             words.push((start, piece));
         }
-        // All that separates is one byte long.
+        // All separators are one byte long.
         start += piece.len() + 1;
     }
     words
 }
 
-/// Exactly three numbers of digits only.
+/// Parses exactly three numbers of digits only.
 fn three<'a>(mut pieces: impl Iterator<Item = &'a str>) -> Option<[u64; 3]> {
     let mut next = || pieces.next().and_then(parse_digits);
     let dims = [next()?, next()?, next()?];
     pieces.next().is_none().then_some(dims)
 }
 
-/// A number of digits only; a number too large for 64 bits is too large for anything.
+/// Parses a number of digits only; it saturates beyond 64 bits.
 fn parse_digits(digits: &str) -> Option<u64> {
     let all_digits = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
     all_digits.then(|| digits.parse().unwrap_or(u64::MAX))
@@ -102,7 +103,7 @@ fn bytes_of(dims: [u64; 3], voxel_type: VoxelType) -> Option<u64> {
     bytes.filter(|&bytes| bytes > 0)
 }
 
-/// A word for a type, with or without a byte order at its end.
+/// Parses a word for a type, optionally with a byte order at its end.
 fn type_and_order(word: &str) -> Option<(VoxelType, Option<Endian>)> {
     let word = word.to_ascii_lowercase();
     let ends = [("le", Some(Endian::Little)), ("be", Some(Endian::Big)), ("", None)];
@@ -110,7 +111,7 @@ fn type_and_order(word: &str) -> Option<(VoxelType, Option<Endian>)> {
         .find_map(|(end, endian)| voxel_type(word.strip_suffix(end)?).map(|voxel_type| (voxel_type, *endian)))
 }
 
-/// The byte order that a name says, by a word for it or behind a type.
+/// Byte order in a name, as a word of its own or after a type.
 pub(super) fn order_of(file_name: &str) -> Option<Endian> {
     let words = words(file_name);
     let said = |(_, word): &(usize, &str)| {
@@ -119,7 +120,7 @@ pub(super) fn order_of(file_name: &str) -> Option<Endian> {
     words.iter().find_map(said)
 }
 
-/// A word for a byte order.
+/// Parses a word for a byte order.
 fn order(word: &str) -> Option<Endian> {
     match word.to_ascii_lowercase().as_str() {
         "le" | "little" | "littleendian" | "lsb" => Some(Endian::Little),
@@ -128,7 +129,7 @@ fn order(word: &str) -> Option<Endian> {
     }
 }
 
-/// A word for a type.
+/// Parses a word for a number type.
 fn voxel_type(word: &str) -> Option<VoxelType> {
     Some(match word {
         "uint8" | "u8" | "ui8" | "uchar" | "ubyte" | "byte" | "8bit" | "8bits" => VoxelType::U8,
@@ -143,7 +144,7 @@ fn voxel_type(word: &str) -> Option<VoxelType> {
     })
 }
 
-/// `name` without an ASCII `ending`, in any case.
+/// Removes an ASCII extension from a name, ignoring case; `None` if it has another one.
 fn strip_ending<'a>(name: &'a str, ending: &str) -> Option<&'a str> {
     let start = name.len().checked_sub(ending.len())?;
     let (base, found) = name.split_at_checked(start)?;

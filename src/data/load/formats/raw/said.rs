@@ -1,15 +1,15 @@
-//! What the name of a file of bare voxels says of it.
+//! Layout hints in the name of a raw file.
 
 use super::super::Endian;
 use crate::data::VoxelType;
 
-/// What the name of a file says of it.
+/// Properties of a raw file that its name gives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Said {
     /// Voxels along x, y and z.
     pub dims: Option<[usize; 3]>,
-    /// The number type.
+    /// Number type of the voxels.
     pub voxel_type: Option<VoxelType>,
-    /// The byte order.
+    /// Byte order of the voxels.
     pub endian: Option<Endian>,
 }

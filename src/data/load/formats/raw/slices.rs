@@ -1,5 +1,5 @@
-//! The three slices through the middle of a file of bare voxels, as it would be stored: read where they lie, so that they
-//! follow while numbers are changed, whatever the size of the file.
+//! Orthogonal slices through the middle of a raw file in a proposed layout, read directly from the file, so that the
+//! preview follows changes of the numbers, whatever the size of the file.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -9,38 +9,38 @@ use super::layout::RawLayout;
 use super::plausible::each_value;
 use crate::data::ValueRange;
 
-/// The most voxels along the edge of a slice: more than a screen shows of it.
+/// Maximum number of voxels along the edge of a slice: more than the preview shows.
 const LONGEST: usize = 256;
 
-/// Bytes that are read at once to pick voxels from; what lies further apart is read voxel by voxel.
+/// Maximum number of bytes that are read at once to pick voxels from; voxels further apart are read one by one.
 const TOGETHER: usize = 64 << 10;
 
-/// Shares of the voxels that are as black, or as white, as can be.
+/// Quantiles of the values that are shown as black and white.
 const CLIPPED: [f64; 2] = [0.01, 0.99];
 
-/// A slice, with fewer voxels where it has more than can be shown.
+/// Slice of the preview, subsampled where it has more voxels than can be shown.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Slice {
     /// Voxels along its first and second axis.
     pub size: [usize; 2],
-    /// Their values, the first axis fastest; none where the file ends before them, or they are no number.
+    /// Values, the first axis fastest; `None` beyond the end of the file, and for values that are not finite.
     pub values: Vec<Option<f32>>,
 }
 
-/// Slices across z, y and x.
+/// Orthogonal slices across z, y and x.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MiddleSlices {
-    /// Of x and y, x and z, y and z.
+    /// Slices along x and y, x and z, and y and z.
     pub slices: [Slice; 3],
-    /// The voxel that all three go through, along x, y and z.
+    /// Indices of the voxel that all three go through, along x, y and z.
     pub at: [usize; 3],
-    /// The values that matter, among those of the slices.
+    /// Value range of the slices, without outliers.
     pub range: ValueRange,
 }
 
-/// Reads the middle slices; none if the work was given up.
+/// Reads the middle slices; `None` if `stop` was set meanwhile.
 ///
-/// Of a compressed file whose start alone is known, they are those in the middle of that.
+/// Where only the beginning of a compressed file is known, the slices are in the middle of that.
 ///
 /// # Errors
 /// When the file cannot be read.
@@ -78,7 +78,7 @@ pub fn middle_slices(
     Ok(found.ok().map(|slices| MiddleSlices { slices, at, range }))
 }
 
-/// Evenly spread indices of an axis.
+/// Evenly spaced indices along an axis of length `n`.
 fn picked(n: usize) -> Vec<usize> {
     let count = n.min(LONGEST);
     (0..count).map(|at| (at as u128 * n as u128 / count as u128) as usize).collect()
@@ -92,7 +92,7 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// Reads voxels of a line along an axis.
+    /// Reads the picked voxels of a line along an axis.
     fn line(
         &mut self,
         first: [usize; 3],
@@ -110,7 +110,7 @@ impl Reader<'_> {
         let place = |at: usize| start.saturating_add(step.saturating_mul(at as u64));
         let mut from = 0;
         while from < picked.len() {
-            // As many as lie together.
+            // As many as lie within one read.
             let within = |at: &&usize| place(**at) - place(picked[from]) + size <= TOGETHER as u64;
             let count = picked[from..].iter().take_while(within).count().max(1);
             let group = &picked[from..from + count];
@@ -135,7 +135,7 @@ impl Reader<'_> {
     }
 }
 
-/// The range of all values but a few at either end; of all, where those are the same.
+/// Value range between the outer quantiles; the full range where those are equal.
 fn range_of(slices: &[Slice]) -> ValueRange {
     let mut values: Vec<f32> =
         slices.iter().flat_map(|slice| slice.values.iter().flatten().copied()).collect();
@@ -159,7 +159,7 @@ mod tests {
         RawLayout { dims, voxel_type: VoxelType::U16, spacing_mm: None, endian: Endian::Big, offset: 3 }
     }
 
-    /// Values x + 100 y + 1000 z behind a header.
+    /// Values x + 100 y + 1000 z after a header of three bytes.
     fn file([x, y, z]: [usize; 3]) -> Vec<u8> {
         let value = |at: usize| (at % x + 100 * (at / x % y) + 1000 * (at / x / y)) as u16;
         [7, 7, 7].into_iter().chain((0..x * y * z).flat_map(|at| value(at).to_be_bytes())).collect()

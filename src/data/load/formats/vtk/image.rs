@@ -1,4 +1,5 @@
-//! What both forms describe: a grid, arrays of values at its points or in its cells, and which of them is read.
+//! Model of a VTK image that both file formats share: the grid, the arrays of point or cell values, and the chosen
+//! array.
 
 use std::io::{self, BufRead, BufReader, Read, Seek as _};
 
@@ -14,28 +15,28 @@ use super::super::{Dimension, Endian, LoadControl, LoadError, LoadOptions, Offer
 use crate::data::attempt::{Attempt, Extent};
 use crate::data::{Hints, Modality, Volume};
 
-/// Arrays that are offered at most: more than simulations have.
+/// Maximum number of arrays that a file may offer: more than simulations have.
 pub(super) const MOST_ARRAYS: usize = 4096;
 
-/// Numbers for each voxel that an array has at most: tensors have nine.
+/// Maximum number of components of an array: tensors have nine.
 pub(super) const MOST_COMPONENTS: usize = 1 << 10;
 
-/// A regular grid.
+/// Regular grid of a VTK image.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Grid {
     /// Points along the axes, none of them 0.
     pub(super) points: [u64; 3],
-    /// The index of the first point: that with index 0 is at the origin.
+    /// Index of the first point; the point with index 0 is at the origin.
     pub(super) first: [f64; 3],
     pub(super) origin: DVec3,
     pub(super) spacing: DVec3,
     pub(super) direction: DMat3,
-    /// Whether the file says how far apart points are.
+    /// True if the file gives the spacing of points.
     pub(super) has_spacing: bool,
 }
 
 impl Grid {
-    /// A grid from the first to the last index along each axis; `None` where one comes before the other.
+    /// Creates a grid from the first and last index along each axis; `None` where a last index is below the first.
     pub(super) fn of_extent(extent: [i64; 6]) -> Option<Self> {
         let [x, xx, y, yy, z, zz] = extent;
         let points = |first: i64, last: i64| {
@@ -51,24 +52,24 @@ impl Grid {
         })
     }
 
-    /// Voxels of an array. An axis of one point has cells that are flat.
+    /// Voxels along the axes. An axis with a single point has one layer of flat cells.
     pub(super) fn dims(&self, of_cells: bool) -> [u64; 3] {
         self.points.map(|points| if of_cells { (points - 1).max(1) } else { points })
     }
 
-    /// All of them; as many as 64 bits can say.
+    /// Number of voxels, saturating at 64 bits.
     pub(super) fn count(&self, of_cells: bool) -> u64 {
         self.dims(of_cells).iter().fold(1u64, |product, &dim| product.saturating_mul(dim))
     }
 
-    /// Where the voxels of an array lie: cells have their values in their middle.
+    /// Placement of the voxels of an array: cell values are at the centres of cells.
     fn placement(&self, of_cells: bool) -> Placement {
         if !self.has_spacing {
             return Placement::unknown();
         }
         let shift = |axis: usize| if of_cells && self.points[axis] > 1 { 0.5 } else { 0.0 };
         let first = DVec3::from_array([0, 1, 2].map(|axis| self.first[axis] + shift(axis)));
-        // As VTK has it; other programs mean nothing by a sign.
+        // VTK reverses such axes; in other programs the sign has no meaning.
         let remark = self.spacing.cmplt(DVec3::ZERO).any().then(|| {
             let [x, y, z] = self.spacing.to_array();
             format!("distances of {x} x {y} x {z} between points: axes with one below 0 run backwards")
@@ -79,43 +80,43 @@ impl Grid {
     }
 }
 
-/// An array of a file.
+/// Array of values in a file.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Array<P> {
     pub(super) name: String,
     pub(super) number: Number,
     pub(super) components: usize,
-    /// Whether its values lie in cells, and not at points.
+    /// True for cell data, false for point data.
     pub(super) of_cells: bool,
     pub(super) is_color: bool,
-    /// Where its values are.
+    /// Location of the values in the file.
     pub(super) place: P,
 }
 
-/// The array that is read, and as what.
+/// Chosen array, with the storage of its values and the part to read.
 pub(super) struct Chosen<P> {
     pub(super) array: Array<P>,
     pub(super) stored: Stored,
     pub(super) extent: Extent,
-    /// Whether there are others.
+    /// True if the file has other arrays.
     is_one_of_several: bool,
 }
 
 impl<P> Chosen<P> {
-    /// Bytes of all its values as they are written in binary.
+    /// Bytes of all values in binary encoding.
     pub(super) fn stored_bytes(&self) -> u64 {
         (self.extent.voxels as u64).saturating_mul(self.stored.bytes_of_voxel())
     }
 
-    /// Numbers of all its voxels.
+    /// Number of numbers of all voxels, counting components.
     pub(super) fn numbers(&self) -> u64 {
         (self.extent.voxels as u64).saturating_mul(self.array.components as u64)
     }
 
-    /// Reads what is kept of the values from where they begin.
+    /// Reads the selected values; the reader is positioned at their beginning.
     ///
     /// # Errors
-    /// `BadInput` also for what the reader calls invalid or too short: it decodes what a file holds.
+    /// `BadInput` also for errors of the reader about invalid or truncated data, since it decodes the file's content.
     pub(super) fn read(
         &self,
         attempt: Attempt<'_>,
@@ -137,7 +138,7 @@ impl<P> Chosen<P> {
         })
     }
 
-    /// The volume of the values.
+    /// Assembles the volume from the values.
     pub(super) fn volume(
         self,
         attempt: Attempt<'_>,
@@ -155,7 +156,7 @@ impl<P> Chosen<P> {
     }
 }
 
-/// Which of the arrays is read: the one that is meant, and of its components the one that is meant.
+/// Selects the array and its component by the user's choice.
 pub(super) fn choose<P>(
     attempt: Attempt<'_>,
     grid: &Grid,
@@ -180,14 +181,14 @@ pub(super) fn choose<P>(
     let components = array.components;
     let component = options.choice.component_among(components, array.is_color);
     let part = Part::asked(attempt, component, components, array.is_color)?;
-    // The byte order is said when they are read.
+    // The byte order is set when values are read.
     let stored = Stored { number: array.number, endian: Endian::Little, components, part };
     let dims = grid.dims(array.of_cells);
     let extent = Extent::checked(attempt, "dimensions", dims, stored.voxel_type(), options.room(control))?;
     Ok(Chosen { array, stored, extent, is_one_of_several })
 }
 
-/// Refuses data of which less is there than they need, before memory is taken for them.
+/// Refuses truncated data before memory is allocated for them.
 pub(super) fn check_room(
     attempt: Attempt<'_>,
     field: &str,
@@ -205,7 +206,7 @@ pub(super) fn check_room(
     ))
 }
 
-/// Whether an error is about what a file holds, and not about the disk that holds it.
+/// Returns true if an error concerns the content of a file, not the disk.
 pub(super) fn is_of_content(error: &io::Error) -> bool {
     matches!(
         error.kind(),
@@ -213,12 +214,12 @@ pub(super) fn is_of_content(error: &io::Error) -> bool {
     )
 }
 
-/// An error about what the file holds.
+/// Creates an error about the content of a file.
 pub(super) fn invalid(why: impl Into<String>) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, why.into())
 }
 
-/// The content of a file from one of its bytes on.
+/// Opens the content of a file from offset `at` on, inflated where it is compressed.
 pub(super) fn content_from<'a>(
     attempt: Attempt<'_>,
     source: &'a mut Source<'_>,
@@ -232,7 +233,7 @@ pub(super) fn content_from<'a>(
     let control = source.control;
     let mut content = source.content();
     let mut left = at;
-    // As much as the look at `cancel` may wait for.
+    // Bytes between two checks for cancellation.
     const BLOCK_BYTES: u64 = 1 << 20;
     while left > 0 {
         control.check()?;
@@ -247,7 +248,7 @@ pub(super) fn content_from<'a>(
     Ok(Box::new(BufReader::new(content)))
 }
 
-/// An error of a reader, in words for what the file holds where it is about that.
+/// Converts an I/O error of a reader: `BadInput` where it concerns the content.
 pub(super) fn broken(attempt: Attempt<'_>, error: io::Error) -> LoadError {
     if is_of_content(&error) {
         attempt.bad_input("content", format!("the file is broken: {error}"), "copy the file again")

@@ -1,4 +1,4 @@
-//! What a file holds, read forwards: as it is stored, or inflated where it is compressed as a whole.
+//! Forward-only reader of a file's content: as stored, or inflated where the whole file is compressed.
 
 pub(crate) mod members;
 
@@ -15,12 +15,12 @@ use super::voxels::{Meant, Voxels};
 use super::{LoadControl, LoadError};
 use crate::data::attempt::{Attempt, Extent};
 
-/// The content of a file.
+/// Content of a file, read forwards.
 pub(in crate::data::load) struct Content {
     form: Form,
-    /// Bytes before the next one.
+    /// Position in the content, in bytes.
     at: u64,
-    /// Bytes of the content, or what it cannot be longer than.
+    /// Length of the content in bytes, or an upper bound of it for compressed files.
     most_bytes: u64,
 }
 
@@ -30,7 +30,7 @@ enum Form {
 }
 
 impl Content {
-    /// The content of a file that is open at its beginning.
+    /// Starts at the beginning of a file's content.
     pub(in crate::data::load) fn of(input: Input, is_gzip: bool) -> Self {
         let most_bytes = if is_gzip { most_inflated(input.len) } else { input.len };
         let form = if is_gzip {
@@ -41,7 +41,7 @@ impl Content {
         Self { form, at: 0, most_bytes }
     }
 
-    /// Checks that so many bytes follow a place, as far as this shows without inflating them all.
+    /// Checks that the content can have `bytes` bytes from `start` on, without inflating it.
     pub(in crate::data::load) fn check_room(
         &self,
         attempt: Attempt<'_>,
@@ -67,7 +67,7 @@ impl Content {
         ))
     }
 
-    /// Goes forward to a byte.
+    /// Moves forward to byte `position`.
     pub(in crate::data::load) fn go_to(&mut self, position: u64, control: &LoadControl) -> Result<(), Fault> {
         if let Form::Stored(input) = &mut self.form {
             self.at = position;
@@ -80,7 +80,7 @@ impl Content {
         Ok(())
     }
 
-    /// Goes forward in what is stored as it is.
+    /// Skips `count` bytes by seeking; only in uncompressed files.
     fn leap(&mut self, count: u64) -> io::Result<()> {
         self.at += count;
         match &mut self.form {
@@ -89,7 +89,7 @@ impl Content {
         }
     }
 
-    /// Reads the voxels that come next: what is kept of them.
+    /// Reads the selected voxels of the grid that comes next.
     pub(in crate::data::load) fn voxels(
         &mut self,
         stored: &Stored,
@@ -114,7 +114,7 @@ impl Content {
         stored.read_meant(self, leap, extent, meant, control).map_err(Fault::of_stream)
     }
 
-    /// Makes a decoder look at the checksum, which comes after the last byte. What follows the voxels is nobody's business.
+    /// Makes a decoder verify the checksum, which follows the last byte. Bytes after the voxels are ignored.
     pub(in crate::data::load) fn finish(&mut self, control: &LoadControl) -> Result<(), Fault> {
         match &mut self.form {
             Form::Stored(_) => Ok(()),

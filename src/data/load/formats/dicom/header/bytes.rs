@@ -1,4 +1,4 @@
-//! The bytes of a file in order, with the place that has been reached; those of a deflated data set inflated.
+//! Sequential reader of a file's bytes with its position; inflates a deflated data set.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read};
@@ -9,15 +9,15 @@ use super::tags::Tag;
 use crate::data::load::Endian;
 use crate::data::load::reading::input::Input;
 
-/// Longer values are not read: of those that are, only tables of offsets grow, by 8 bytes for each frame.
+/// Maximum size of a value that is read: of the values in use, only offset tables grow, by 8 bytes per frame.
 pub(in crate::data::load::formats::dicom) const LONGEST_VALUE: u64 = 4 << 20;
 
-/// The bytes of a file, read from its beginning on.
+/// Sequential reader of a DICOM file, from its beginning.
 pub(in crate::data::load::formats::dicom) struct Bytes {
     from: From,
-    /// How many have been read, after inflating.
+    /// Number of bytes read so far, after inflating.
     pub(in crate::data::load::formats::dicom) at: u64,
-    /// How many there are; `u64::MAX` where only inflating them all would tell.
+    /// Total number of bytes; `u64::MAX` for deflated data, whose size is unknown before all of them are inflated.
     pub(in crate::data::load::formats::dicom) len: u64,
 }
 
@@ -31,7 +31,7 @@ impl Bytes {
         Self { from: From::File(input.reader), at: 0, len: input.len }
     }
 
-    /// The rest, inflated.
+    /// Inflates the rest of the bytes.
     pub(in crate::data::load::formats::dicom) fn inflated(self) -> Self {
         match self.from {
             From::File(reader) => {
@@ -41,22 +41,22 @@ impl Bytes {
         }
     }
 
-    /// Whether the place can be found again in the file itself.
+    /// True if the data are deflated, so that positions are no offsets in the file.
     pub(in crate::data::load::formats::dicom) fn is_deflated(&self) -> bool {
         matches!(self.from, From::Deflated(_))
     }
 
-    /// The next bytes.
+    /// Reads the next `N` bytes.
     ///
     /// # Errors
-    /// `UnexpectedEof` where there are not so many.
+    /// `UnexpectedEof` if fewer remain.
     pub(in crate::data::load::formats::dicom) fn next<const N: usize>(&mut self) -> io::Result<[u8; N]> {
         let mut bytes = [0; N];
         self.read_exact(&mut bytes)?;
         Ok(bytes)
     }
 
-    /// The next bytes, without going on; fewer at the end. Not of what is deflated.
+    /// Returns the next bytes without consuming them; fewer at the end, and none of deflated data.
     pub(in crate::data::load::formats::dicom) fn peek<const N: usize>(&mut self) -> io::Result<Vec<u8>> {
         let mut bytes = Vec::with_capacity(N);
         let From::File(reader) = &mut self.from else { return Ok(bytes) };
@@ -79,7 +79,7 @@ impl Bytes {
         })
     }
 
-    /// The next tag; `None` where the bytes end before one.
+    /// Reads the next tag; `None` if the bytes end before a whole one.
     pub(in crate::data::load::formats::dicom) fn tag(&mut self, endian: Endian) -> io::Result<Option<Tag>> {
         match self.u16(endian).and_then(|group| Ok((group, self.u16(endian)?))) {
             Ok((group, element)) => Ok(Some(Tag::from(group) << 16 | Tag::from(element))),
@@ -88,17 +88,17 @@ impl Bytes {
         }
     }
 
-    /// A value of so many bytes, at most [`LONGEST_VALUE`] of them.
+    /// Reads a value of `length` bytes, which must not exceed [`LONGEST_VALUE`].
     pub(in crate::data::load::formats::dicom) fn value(&mut self, length: u64) -> io::Result<Vec<u8>> {
         let mut value = Vec::new();
         self.by_ref().take(length.min(LONGEST_VALUE)).read_to_end(&mut value)?;
         if (value.len() as u64) < length { Err(io::ErrorKind::UnexpectedEof.into()) } else { Ok(value) }
     }
 
-    /// Goes on by so many bytes.
+    /// Skips forward by `count` bytes.
     pub(in crate::data::load::formats::dicom) fn skip(&mut self, count: u64) -> io::Result<()> {
         if let From::File(reader) = &mut self.from {
-            // Beyond the end would be no error.
+            // Seeking beyond the end of the file would not fail.
             let is_within = self.at.checked_add(count).is_some_and(|end| end <= self.len);
             let step = i64::try_from(count).ok().filter(|_| is_within);
             reader.seek_relative(step.ok_or(io::ErrorKind::UnexpectedEof)?)?;

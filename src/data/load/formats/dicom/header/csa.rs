@@ -1,29 +1,31 @@
-//! The header that Siemens scanners hide in a private element (0029,1010): named values as text, after
+//! CSA header, which Siemens scanners store in a private element (0029,1010): named values as text, after
 //! <https://nipy.org/nibabel/dicom/siemens_csa.html>.
 
-/// What begins the newer of its two layouts.
+/// Magic bytes of the newer of its two layouts (CSA2).
 const MARK: &[u8] = b"SV10";
 
-/// Bytes of a named value's head: name (64), multiplicity, representation, type, items, and a mark of four bytes each.
+/// Size of the head of a named value: name (64 bytes), then multiplicity, representation, type, number of items, and
+/// a mark, of four bytes each.
 const HEAD_BYTES: usize = 84;
 
-/// Bytes of the head of one of its items: four numbers, of which one is the item's length.
+/// Size of the head of an item: four numbers, one of which is the item's length.
 const ITEM_HEAD_BYTES: usize = 16;
 
-/// Most named values that are looked at: files have about a hundred.
+/// Maximum number of named values examined: files have about a hundred.
 const MOST_VALUES: usize = 1024;
 
-/// Most items of a value that are looked at: lists of slice times have one for each of some hundred slices.
+/// Maximum number of items of a value examined: lists of slice times have one for each of some hundred slices.
 const MOST_ITEMS: usize = 4096;
 
-/// The numbers of a named value, as many as `N`; `None` where they are not there, or anything is broken before them.
+/// Returns the first `N` numbers of a named value; `None` if it has fewer, or if the header is corrupt before it.
 pub(crate) fn numbers<const N: usize>(header: &[u8], name: &str) -> Option<[f64; N]> {
     let is_marked = header.starts_with(MARK);
-    // The newer layout has four more bytes behind its mark; both then count their values and have a mark of four bytes.
+    // The newer layout has four more bytes behind its magic; in both, the number of values and a mark of four bytes
+    // follow.
     let mut at = if is_marked { 8 } else { 0 };
     let count = usize::try_from(u32_at(header, at)?).ok()?.min(MOST_VALUES);
     at += 8;
-    // Lengths of the older layout count from the first value's number of items.
+    // In the older layout, lengths of items are offset by the first value's number of items.
     let mut first_items = None;
     for _ in 0..count {
         let head = header.get(at..at + HEAD_BYTES)?;
@@ -66,7 +68,7 @@ fn u32_at(bytes: &[u8], at: usize) -> Option<u32> {
 pub(crate) mod tests {
     use super::*;
 
-    /// A header of the newer layout with these named values.
+    /// Returns a header of the newer layout with these named values.
     pub(crate) fn header(values: &[(&str, &[&str])]) -> Vec<u8> {
         let mut bytes =
             [MARK, &[4, 3, 2, 1], &(values.len() as u32).to_le_bytes(), &77u32.to_le_bytes()].concat();

@@ -1,4 +1,4 @@
-//! What is kept of a header.
+//! Values of a DICOM header that the reader uses.
 
 use glam::DVec3;
 
@@ -12,13 +12,13 @@ use super::taken::Attribute;
 use super::value::Value;
 use crate::data::load::Endian;
 
-/// Most texts of image types that are told apart in a file.
+/// Maximum number of distinct frame types in a file.
 const MOST_FRAME_TYPES: usize = 256;
 
-/// The creator of Siemens' private elements of a picture.
+/// Private creator of Siemens' elements in an image header.
 const SIEMENS: &str = "SIEMENS MR HEADER";
 
-/// What is kept of a header.
+/// Values of a DICOM header that the reader uses, by element.
 #[derive(Debug, Clone, Default)]
 pub(in crate::data::load::formats::dicom) struct Found {
     pub(in crate::data::load::formats::dicom) sop_class: String,
@@ -41,40 +41,40 @@ pub(in crate::data::load::formats::dicom) struct Found {
     pub(in crate::data::load::formats::dicom) bits_stored: Option<u16>,
     pub(in crate::data::load::formats::dicom) high_bit: Option<u16>,
     pub(in crate::data::load::formats::dicom) is_signed: bool,
-    /// As it is stored: the representation of the pixels says whether it has a sign.
+    /// Pixel Padding Value as stored; the pixel representation decides if it is signed.
     pub(in crate::data::load::formats::dicom) padding: Option<u16>,
-    /// Values go through a table before they mean anything.
+    /// True if a lookup table maps stored values to meaningful ones.
     pub(in crate::data::load::formats::dicom) has_value_table: bool,
-    /// It lists other files.
+    /// True for a DICOMDIR, which lists other files.
     pub(in crate::data::load::formats::dicom) is_directory: bool,
-    /// Where the frames of compressed pixels begin, after the table before them.
+    /// Extended Offset Table: offsets of the frames of compressed pixels, counted from behind the basic offset table.
     pub(in crate::data::load::formats::dicom) frame_starts: Vec<u64>,
-    /// How far from the first frames lie, across.
+    /// Offsets of the frames from the first along the normal, in millimetres.
     pub(in crate::data::load::formats::dicom) frame_offsets: Vec<f64>,
-    /// Slice Location Vector: where frames lie along a line, millimetres.
+    /// Slice Location Vector: positions of the frames along a line, in millimetres.
     pub(crate) frame_locations_mm: Vec<f64>,
-    /// Frames follow each other in time, as the element says that they are counted by.
+    /// True if the Frame Increment Pointer names a time, that is, frames follow each other in time.
     pub(crate) is_film: bool,
-    /// How many slices lie side by side in a picture, as Siemens scanners write them.
+    /// Number of slices in a mosaic image, as Siemens scanners write them.
     pub(crate) mosaic_count: Option<f64>,
-    /// Across those slices, from the first to the last; left-posterior-superior.
+    /// Slice normal of a mosaic, from the first slice to the last; left-posterior-superior.
     pub(crate) mosaic_normal: Option<DVec3>,
     pub(crate) segmentation: Option<SegmentationType>,
     pub(crate) segments: Vec<Segment>,
-    /// The value of a pixel that is all of a segment.
+    /// Value of a pixel that lies entirely in its segment.
     pub(crate) most_fraction: Option<u16>,
-    /// Frame types other than the file's image type.
+    /// Distinct frame types other than the file's image type.
     pub(crate) frame_types: Vec<String>,
-    /// Whether Siemens' private elements mean what they mean.
+    /// True if the private creator is Siemens, so that private elements have their known meaning.
     has_siemens_header: bool,
-    /// Units (3 is centimetres) and distances between columns and rows in a region of ultrasound.
+    /// Calibrated region of an ultrasound image: units (3 is centimetres) and spacing of columns and rows.
     region: Region,
     pub(in crate::data::load::formats::dicom) all: Plane,
     pub(in crate::data::load::formats::dicom) shared: Plane,
     pub(in crate::data::load::formats::dicom) frames: Vec<Plane>,
 }
 
-/// How far pixels of a region of a picture of ultrasound lie apart (PS3.3 section C.8.5.5).
+/// Pixel spacing in a calibrated region of an ultrasound image (PS3.3 section C.8.5.5).
 #[derive(Debug, Clone, Copy, Default)]
 struct Region {
     units: [Option<u16>; 2],
@@ -82,9 +82,10 @@ struct Region {
 }
 
 impl Region {
-    /// Between rows and between columns, millimetres; `None` where pixels measure something else.
+    /// Returns the spacing between rows and between columns, in millimetres; `None` if an axis measures something
+    /// else.
     fn spacing_mm(&self) -> Option<[f64; 2]> {
-        /// Physical Units X Direction: centimetres.
+        /// Code of centimetres in Physical Units X Direction.
         const CENTIMETRES: Option<u16> = Some(3);
         let [Some(x), Some(y)] = self.delta else { return None };
         (self.units == [CENTIMETRES; 2] && x != 0.0 && y != 0.0).then(|| [y.abs() * 10.0, x.abs() * 10.0])
@@ -92,7 +93,7 @@ impl Region {
 }
 
 impl Found {
-    /// Whether an element's value is kept.
+    /// Returns true if the value of an element in this context is used.
     pub(in crate::data::load::formats::dicom) fn wants(place: Place, tag: Tag) -> bool {
         match place {
             Place::Elsewhere => false,
@@ -104,7 +105,7 @@ impl Found {
         }
     }
 
-    /// Takes notice of a sequence.
+    /// Records that a sequence occurs.
     pub(in crate::data::load::formats::dicom) fn pass(&mut self, place: Place, sequence: Tag) {
         match (place, sequence) {
             (Place::Top, tags::VALUE_TABLE) => self.has_value_table = true,
@@ -113,7 +114,7 @@ impl Found {
         }
     }
 
-    /// Keeps a value.
+    /// Stores the value of an element, depending on its context.
     pub(in crate::data::load::formats::dicom) fn take(
         &mut self,
         place: Place,
@@ -122,7 +123,7 @@ impl Found {
         endian: Endian,
     ) {
         let value = Value { bytes, endian };
-        // Said of all, of all frames or of each: nobody mixes units.
+        // Stated for the file, for all frames or for each frame: units are never mixed in practice.
         if tag == tags::RESCALE_TYPE && self.rescale_type.is_empty() {
             self.rescale_type = value.text();
         }
@@ -186,7 +187,7 @@ impl Found {
         }
     }
 
-    /// What Siemens scanners say of slices that lie side by side in one picture.
+    /// Stores the values of Siemens' private elements: mosaic and b-value.
     fn take_siemens(&mut self, tag: Tag, value: Value<'_>) {
         match tag {
             tags::SIEMENS_CREATOR => self.has_siemens_header = value.text() == SIEMENS,
@@ -241,14 +242,14 @@ impl Found {
         }
     }
 
-    /// The image type of a frame, or else of the file.
+    /// Returns the image type of a frame, or else of the file.
     pub(crate) fn image_type(&self, frame: usize) -> &str {
         let own = self.frames.get(frame).and_then(|plane| plane.taken.get(Attribute::ImageType));
         let said = own.or(self.shared.taken.get(Attribute::ImageType));
         said.and_then(|at| self.frame_types.get(at as usize)).unwrap_or(&self.image_type)
     }
 
-    /// What is said of a frame.
+    /// Returns the plane of a frame, with values shared by all frames filled in.
     pub(in crate::data::load::formats::dicom) fn plane(&self, frame: usize) -> Plane {
         let of_frame = self.frames.get(frame).copied().unwrap_or_default();
         let mut plane = of_frame.or(&self.shared).or(&self.all);

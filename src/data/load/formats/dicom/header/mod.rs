@@ -1,4 +1,4 @@
-//! The header of a file: everything before its pixels.
+//! Header of a DICOM file: all data elements before the pixels.
 
 pub(super) mod bytes;
 pub(super) mod csa;
@@ -28,24 +28,24 @@ use tags::{ITEM, TRANSFER_SYNTAX};
 use value::Value;
 use walk::{Broken, PixelElement, head, walk};
 
-/// Where files have their mark (PS3.10 section 7.1): after 128 bytes that mean nothing.
+/// Offset of the magic bytes `DICM` (PS3.10 section 7.1), behind a preamble of 128 bytes.
 const MARK_AT: usize = 128;
 
-/// Elements of the group that says how the rest is written: the standard has twelve.
+/// Maximum number of elements of the file meta group: the standard has twelve.
 const MOST_META_ELEMENTS: usize = 1000;
 
-/// A file, read up to its pixels.
+/// Header of a DICOM file, parsed up to its pixels.
 #[derive(Debug)]
 pub(super) struct Header {
     pub(super) path: PathBuf,
-    /// Bytes of the file.
+    /// Size of the file in bytes.
     pub(super) len: u64,
     pub(super) syntax: Syntax,
     pub(super) found: Found,
     pub(super) pixels: Option<PixelElement>,
 }
 
-/// Whether a file that begins like this is one: by its mark, or by its first two elements where it has none.
+/// True if these bytes begin a DICOM file: by the magic bytes, or by the first two elements in files without them.
 pub(super) fn is_dicom(start: &[u8]) -> bool {
     has_mark(start) || begins_with_elements(start)
 }
@@ -54,7 +54,7 @@ fn has_mark(start: &[u8]) -> bool {
     start.get(MARK_AT..MARK_AT + 4) == Some(b"DICM")
 }
 
-/// Whether two elements of the groups that come first begin a file, in order.
+/// True if a file begins with two elements of the lowest groups, in ascending order.
 fn begins_with_elements(start: &[u8]) -> bool {
     let form = Form::of_start(start, Form::EXPLICIT);
     let u16_at =
@@ -67,7 +67,7 @@ fn begins_with_elements(start: &[u8]) -> bool {
     let length = match (form.is_explicit, start.get(4..6)) {
         (true, Some(b"UL" | b"CS" | b"UI" | b"DA" | b"TM" | b"SH" | b"LO")) => u16_at(6),
         (true, _) => None,
-        // Of 32 bits: the first that come are short.
+        // Lengths of 32 bits: those of the first elements are small.
         (false, _) => u16_at(4).filter(|_| u16_at(6) == Some(0)),
     };
     let Some(length) = length.filter(|&length| length % 2 == 0 && length <= 256) else { return false };
@@ -77,7 +77,7 @@ fn begins_with_elements(start: &[u8]) -> bool {
 }
 
 impl Header {
-    /// Reads a file's header.
+    /// Reads the header of a file.
     pub(super) fn read(path: &Path, control: &LoadControl) -> Result<(Self, Bytes), LoadError> {
         let attempt = Attempt { what: super::WHAT, path };
         let mut input = Input::open(attempt)?;
@@ -85,7 +85,7 @@ impl Header {
         Self::of(attempt, input, start.stored(), control)
     }
 
-    /// As [`Self::read`], of a file that is open and begins so.
+    /// Reads the header of a file that is already open and begins with the bytes `start`.
     pub(super) fn of(
         attempt: Attempt<'_>,
         input: Input,
@@ -103,7 +103,7 @@ impl Header {
         if syntax.is_deflated {
             bytes = bytes.inflated();
         } else {
-            // What is there counts: programs convert a file and forget to say so.
+            // The data themselves decide: programs convert a file and leave its transfer syntax unchanged.
             let start = bytes.peek::<6>().map_err(|error| attempt.io(error))?;
             syntax.form = Form::of_start(&start, syntax.form);
         }
@@ -119,7 +119,7 @@ impl Header {
         Ok((Self { path: attempt.path.to_owned(), len, syntax, found, pixels }, bytes))
     }
 
-    /// What it is, where it has no pixels: the name of its class, or what it says of itself.
+    /// Describes a file without pixels: the name of its class, or what its header states.
     pub(super) fn kind(&self) -> String {
         let found = &self.found;
         let class = ObjectClass::from_uid(&found.sop_class);
@@ -132,21 +132,21 @@ impl Header {
         }
     }
 
-    /// How many frames it says that it has; at least one.
+    /// Returns the stated number of frames, at least 1.
     pub(super) fn frame_count(&self) -> u64 {
         self.found.frame_count.map_or(1, |count| count.max(1.0) as u64)
     }
 }
 
-/// Bytes of a picture whose beginning says how it is compressed: more than what stands before the size of a JPEG.
+/// Number of bytes of a compressed image that identify its codec: more than precede the size in a JPEG.
 const FRAGMENT_START: usize = 4096;
 
-/// The beginning of the first compressed picture; nothing where pixels are not in fragments.
+/// Returns the beginning of the first compressed image; empty if the pixels are not in fragments.
 fn first_fragment(bytes: &mut Bytes, pixels: PixelElement) -> io::Result<Vec<u8>> {
     if pixels.length.is_some() {
         return Ok(Vec::new());
     }
-    // The first item is a table. What is cut off there is told later, with better words.
+    // The first item is the offset table. Truncation here is reported later, in a clearer message.
     let (Some(ITEM), Ok(length)) = (bytes.tag(Endian::Little)?, bytes.u32(Endian::Little)) else {
         return Ok(Vec::new());
     };
@@ -156,14 +156,14 @@ fn first_fragment(bytes: &mut Bytes, pixels: PixelElement) -> io::Result<Vec<u8>
     bytes.peek::<FRAGMENT_START>()
 }
 
-/// Bytes that the pixels have without compression; `None` where the header does not say it.
+/// Returns the size of the pixels without compression, in bytes; `None` if the header lacks a factor.
 fn native_bytes(found: &Found) -> Option<u64> {
     let factors = [found.rows?, found.columns?, found.samples.unwrap_or(1), found.bits_allocated?];
     let bits = factors.into_iter().map(u64::from).product::<u64>();
     Some((bits.checked_mul(found.frame_count.map_or(1, |count| count.max(1.0) as u64))?).div_ceil(8))
 }
 
-/// Reads the group that says how the rest is written; the identifier of the transfer syntax.
+/// Reads the file meta group; returns the identifier of the transfer syntax.
 fn meta(bytes: &mut Bytes) -> Result<Option<String>, Broken> {
     let mut said = None;
     for _ in 0..MOST_META_ELEMENTS {

@@ -1,31 +1,31 @@
-//! Where in a data set an element lies, as far as that matters.
+//! Context of a data element: the sequence in which it is nested, if its values are used.
 
 use super::segments::MOST_SEGMENTS;
 use super::tags::{self, Tag};
 
-/// Most frames of a file that are told apart.
+/// Maximum number of frames of a file that are distinguished.
 pub(in crate::data::load::formats::dicom) const MOST_FRAMES: usize = 1 << 18;
 
-/// Where in a data set an element lies, as far as that matters.
+/// Context of a data element within the nested sequences of a data set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::data::load::formats::dicom) enum Place {
     Top,
-    /// What is said of all frames.
+    /// Functional groups shared by all frames.
     Shared,
-    /// What is said of a frame.
+    /// Functional groups of one frame, by index.
     Frame(usize),
-    /// A detector of nuclear medicine, which says where the pictures lie.
+    /// Detector of nuclear medicine, whose sequence gives position and orientation of the images.
     Detector,
-    /// A region of a picture of ultrasound, which says how far apart its pixels are.
+    /// Calibrated region of an ultrasound image, which gives its pixel spacing.
     Region,
-    /// What is said of a segment.
+    /// Description of one segment, by index.
     Segment(usize),
-    /// Where nothing is wanted.
+    /// Sequence without values of interest.
     Elsewhere,
 }
 
 impl Place {
-    /// The place inside a sequence; `None` where nothing in it is wanted.
+    /// Returns the context inside a sequence; `None` if none of its values are used.
     pub(in crate::data::load::formats::dicom) fn inside(self, sequence: Tag) -> Option<Self> {
         match (self, sequence) {
             (Self::Top, tags::SHARED_GROUPS) => Some(Self::Shared),
@@ -56,14 +56,14 @@ impl Place {
         }
     }
 
-    /// The place inside an item of a sequence that this is the place inside of.
+    /// Returns the context inside item `number` of a sequence, given the context inside the sequence.
     pub(in crate::data::load::formats::dicom) fn item(self, sequence: Tag, number: usize) -> Self {
         match (self, sequence) {
             (Self::Frame(_), tags::FRAME_GROUPS) if number >= MOST_FRAMES => Self::Elsewhere,
             (Self::Frame(_), tags::FRAME_GROUPS) => Self::Frame(number),
             (Self::Segment(_), tags::SEGMENTS) if number >= MOST_SEGMENTS => Self::Elsewhere,
             (Self::Segment(_), tags::SEGMENTS) => Self::Segment(number),
-            // Several detectors, or regions: the first counts.
+            // Of several detectors or regions only the first counts.
             (Self::Detector, tags::DETECTORS) | (Self::Region, tags::REGIONS) if number > 0 => {
                 Self::Elsewhere
             }

@@ -1,42 +1,42 @@
-//! What a header says of one picture: where it lies, when it was taken, what its values mean.
+//! Image plane: position, acquisition attributes and value scale of one DICOM image, as far as the header gives them.
 
 use glam::DVec3;
 
 use super::taken::Taken;
 
-/// Where a picture lies, in left-posterior-superior millimetres, and what its values mean: as far as it is said.
+/// Image plane, in left-posterior-superior millimetres, with the scale of its values; absent fields are not stated.
 #[derive(Debug, Clone, Copy, Default)]
 pub(in crate::data::load::formats::dicom) struct Plane {
-    /// The middle of its first pixel.
+    /// Centre of the first pixel.
     pub(in crate::data::load::formats::dicom) position: Option<DVec3>,
-    /// The position is that of this picture, and not of a whole file of several.
+    /// True if the position is that of this image, not of a file with several frames.
     pub(in crate::data::load::formats::dicom) has_own_position: bool,
-    /// It is one of frames that follow each other in time.
+    /// True if it is one of frames that follow each other in time.
     pub(crate) is_of_film: bool,
-    /// Position and orientation are those of a volume of ultrasound, in millimetres of its own.
+    /// True if position and orientation refer to an ultrasound volume's own frame of reference, in millimetres.
     pub(crate) is_in_volume_frame: bool,
-    /// Slice Location, millimetres along a line that nobody names.
+    /// Slice Location: millimetres along an unspecified line.
     pub(crate) location_mm: Option<f64>,
-    /// Along rows, that is from column to column; and along columns.
+    /// Unit directions along rows (from column to column) and along columns.
     pub(in crate::data::load::formats::dicom) orientation: Option<[DVec3; 2]>,
-    /// Between rows, and between columns.
+    /// Spacing between rows, and between columns, in millimetres.
     pub(in crate::data::load::formats::dicom) spacing: Option<[f64; 2]>,
-    /// The element that the distances are taken from, where it is not Pixel Spacing.
+    /// Element that the spacing is taken from, if it is not Pixel Spacing.
     pub(crate) spacing_source: Option<&'static str>,
     pub(in crate::data::load::formats::dicom) thickness: Option<f64>,
-    /// Between the middles of slices.
+    /// Spacing between the centres of adjacent slices, in millimetres.
     pub(in crate::data::load::formats::dicom) between: Option<f64>,
     pub(in crate::data::load::formats::dicom) slope: Option<f64>,
     pub(in crate::data::load::formats::dicom) intercept: Option<f64>,
-    /// The segment of which it is a mask.
+    /// Number of the segment that the image is a mask of.
     pub(crate) segment: Option<u16>,
-    /// Centre and width.
+    /// Centre and width of the display window.
     pub(in crate::data::load::formats::dicom) window: [Option<f64>; 2],
     pub(in crate::data::load::formats::dicom) taken: Taken,
 }
 
 impl Plane {
-    /// What is said of one picture, or else of all.
+    /// Fills in values that are stated for all images, where this image has none.
     pub(in crate::data::load::formats::dicom) fn or(&self, all: &Self) -> Self {
         Self {
             position: self.position.or(all.position),
@@ -57,13 +57,13 @@ impl Plane {
         }
     }
 
-    /// Across the picture, if it is said how it lies.
+    /// Returns the unit normal of the image plane, if its orientation is known.
     pub(in crate::data::load::formats::dicom) fn normal(&self) -> Option<DVec3> {
         let [along_row, along_column] = self.orientation?;
         along_row.cross(along_column).try_normalize()
     }
 
-    /// Slope and intercept of its values; one of 0 says nothing.
+    /// Returns slope and intercept of the values; a slope of 0 counts as absent.
     pub(in crate::data::load::formats::dicom) fn scale(&self) -> [f64; 2] {
         let is_usable = |slope: &f64| slope.is_finite() && *slope != 0.0;
         [self.slope.filter(is_usable).unwrap_or(1.0), self.intercept.filter(|v| v.is_finite()).unwrap_or(0.0)]

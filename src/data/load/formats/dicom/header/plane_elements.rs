@@ -1,4 +1,4 @@
-//! The elements that say where a picture lies, when it was taken, and what its values mean.
+//! Data elements of an image plane: position, acquisition attributes and value scale.
 
 use glam::DVec3;
 
@@ -7,7 +7,7 @@ use super::tags::{self, Tag};
 use super::taken::Attribute;
 use super::value::Value;
 
-/// Keeps what is said of a picture.
+/// Stores the value of an element that describes one image.
 pub(super) fn take_plane(plane: &mut Plane, tag: Tag, value: Value<'_>) {
     match tag {
         tags::POSITION => plane.position = value.decimals_of().map(DVec3::from_array),
@@ -19,7 +19,7 @@ pub(super) fn take_plane(plane: &mut Plane, tag: Tag, value: Value<'_>) {
                 (plane.spacing, plane.spacing_source) = (Some(spacing), None);
             }
         }
-        // At the detector, where the body is not: better than nothing.
+        // Spacing at the detector, not at the body: a fallback.
         tags::DETECTOR_SPACING if plane.spacing.is_none() => {
             plane.spacing = value.decimals_of();
             plane.spacing_source = Some("Imager Pixel Spacing");
@@ -48,12 +48,12 @@ pub(super) fn take_plane(plane: &mut Plane, tag: Tag, value: Value<'_>) {
     }
 }
 
-/// Along rows and along columns, of six cosines.
+/// Splits six direction cosines into the directions along rows and along columns.
 fn orientation([a, b, c, d, e, f]: [f64; 6]) -> [DVec3; 2] {
     [DVec3::new(a, b, c), DVec3::new(d, e, f)]
 }
 
-/// Keeps what is said of when and how a picture was taken.
+/// Stores the value of an acquisition attribute, if the element is one.
 fn take_attribute(plane: &mut Plane, tag: Tag, value: Value<'_>) {
     let (attribute, value) = match tag {
         tags::TEMPORAL_POSITION => (Attribute::TemporalPosition, value.decimal()),

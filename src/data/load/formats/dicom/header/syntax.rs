@@ -1,11 +1,11 @@
-//! Transfer syntaxes: how a data set is written, and how its pixels are compressed (PS3.5 chapter 10, PS3.6 annex A).
+//! Transfer syntaxes: encoding of data sets, and compression of pixels (PS3.5 chapter 10, PS3.6 annex A).
 
 use crate::data::load::Endian;
 
-/// How data elements are written.
+/// Encoding of data elements: explicit or implicit value representation, and byte order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::data::load::formats::dicom) struct Form {
-    /// Elements say their representation.
+    /// True if elements state their value representation.
     pub(in crate::data::load::formats::dicom) is_explicit: bool,
     pub(in crate::data::load::formats::dicom) endian: Endian,
 }
@@ -17,10 +17,10 @@ impl Form {
         Self { is_explicit: false, endian: Endian::Little };
     const BIG: Self = Self { is_explicit: true, endian: Endian::Big };
 
-    /// How a data set is written that begins so.
+    /// Detects the encoding from the beginning of a data set; `said` is the stated one, for lack of evidence.
     pub(in crate::data::load::formats::dicom) fn of_start(start: &[u8], said: Self) -> Self {
         let [a, b, _, _, vr @ ..] = start else { return said };
-        // The first group is 8 at most, so that one of its bytes is 0 and says the order.
+        // The first group is 8 at most, so that one of its bytes is 0, which shows the byte order.
         let endian = match (a, b) {
             (0, 1..) => Endian::Big,
             (1.., 0) => Endian::Little,
@@ -31,10 +31,10 @@ impl Form {
     }
 }
 
-/// How pixels are compressed.
+/// Compression codec of the pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::data::load::formats::dicom) enum Codec {
-    /// They are not.
+    /// Native encoding: pixels without compression.
     Native,
     Rle,
     Jpeg,
@@ -43,10 +43,10 @@ pub(in crate::data::load::formats::dicom) enum Codec {
 }
 
 impl Codec {
-    /// How a picture is compressed that begins so, after the marks of the standards that each codec names.
+    /// Detects the codec of a compressed image from its magic bytes, as the codecs' standards define them.
     fn of_picture(start: &[u8]) -> Option<Self> {
         const JPEG_2000_FILE: &[u8] = &[0, 0, 0, 12, b'j', b'P', b' ', b' '];
-        /// Bit of the capabilities (`Rsiz`) that says High Throughput (ITU-T T.814, which is not read).
+        /// Capability bit (`Rsiz`) of High-Throughput JPEG 2000 (ITU-T T.814, which is not supported).
         const HIGH_THROUGHPUT: u8 = 0x40;
         match start {
             [0xff, 0x4f, 0xff, 0x51, _, _, capabilities, ..] => {
@@ -54,13 +54,13 @@ impl Codec {
             }
             [0xff, 0xd8, rest @ ..] => Self::of_jpeg_segments(rest),
             _ if start.starts_with(JPEG_2000_FILE) => Some(Self::Jpeg2000),
-            // Up to 15 planes, of which the first begins behind a table of 64 bytes (PS3.5, G.5).
+            // Up to 15 segments, the first of which begins behind a header of 64 bytes (PS3.5, G.5).
             [1..=15, 0, 0, 0, 64, 0, 0, 0, ..] => Some(Self::Rle),
             _ => None,
         }
     }
 
-    /// As [`Self::of_picture`], of the segments of a JPEG up to that which says its size.
+    /// Detects the codec of a JPEG from its segments, up to the frame header.
     fn of_jpeg_segments(mut segments: &[u8]) -> Option<Self> {
         while let [0xff, mark, high, low, ..] = *segments {
             match mark {
@@ -74,42 +74,42 @@ impl Codec {
     }
 }
 
-/// A syntax that is not read: its name, and what helps.
+/// Unsupported transfer syntax: its name, and advice for the user.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(in crate::data::load::formats::dicom) struct NotRead {
-    /// Nobody but its maker knows it: what is there may be plain all the same.
+    /// True for a private syntax, whose pixels may nevertheless be plain.
     pub(crate) is_private: bool,
     pub(in crate::data::load::formats::dicom) name: String,
     pub(in crate::data::load::formats::dicom) help: &'static str,
 }
 
-/// Private to GE: a data set without representations, pixels with their highest byte first.
+/// Private syntax of GE: a data set without value representations, pixels in big-endian order.
 const PRIVATE_GE: &str = "1.2.840.113619.5.2";
 
-/// Where tools of every system know it.
+/// Advice for a syntax that tools on every system can convert.
 const CONVERT: &str = "convert it with `gdcmconv --raw in.dcm out.dcm`";
 
-/// Where they do not.
+/// Advice for a syntax that such tools cannot convert.
 const ASK: &str = "ask who sent it for pixels without compression (Explicit VR Little Endian)";
 
-/// Films within files.
+/// Advice for files that contain a video stream.
 const FRAMES: &str = "take its pictures out: `gdcmraw -i in.dcm -o film.mpg`, `ffmpeg -i film.mpg %04d.png`, and open their folder";
 
-/// A transfer syntax.
+/// Transfer syntax of a data set and its pixels.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(in crate::data::load::formats::dicom) struct Syntax {
     pub(in crate::data::load::formats::dicom) form: Form,
     pub(in crate::data::load::formats::dicom) is_deflated: bool,
-    /// The order of the bytes of pixels, where it is not that of the data set.
+    /// Byte order of the pixels, if it differs from that of the data set.
     pub(crate) pixel_endian: Option<Endian>,
-    /// Pixels are in fragments.
+    /// True if the pixels are in fragments.
     pub(in crate::data::load::formats::dicom) is_encapsulated: bool,
-    /// `Err` where it is not read.
+    /// Codec of the pixels; `Err` if the syntax is not supported.
     pub(in crate::data::load::formats::dicom) codec: Result<Codec, NotRead>,
 }
 
 impl Syntax {
-    /// The syntax of a data set whose file does not say it.
+    /// Returns the syntax of a data set whose file does not state one.
     pub(in crate::data::load::formats::dicom) fn unsaid(form: Form) -> Self {
         Self {
             form,
@@ -120,7 +120,7 @@ impl Syntax {
         }
     }
 
-    /// The syntax of an identifier.
+    /// Returns the syntax of an identifier.
     pub(in crate::data::load::formats::dicom) fn of(uid: &str) -> Self {
         let native = |form| Self::unsaid(form);
         let encapsulated = |codec| Self {
@@ -156,26 +156,26 @@ impl Syntax {
         }
     }
 
-    /// As [`Self::refused`], where a look at the pixels may show how they are written.
+    /// Returns the syntax of a private or unknown identifier, whose pixels may turn out to be supported.
     fn private(uid: &str, name: &str) -> Self {
         let refused = Self::refused(uid, name, ASK);
         let codec = refused.codec.map_err(|not_read| NotRead { is_private: true, ..not_read });
         Self { codec, ..refused }
     }
 
-    /// Whether only its maker knows it.
+    /// True for a private or unknown syntax.
     pub(crate) fn is_private(&self) -> bool {
         self.codec.as_ref().is_err_and(|not_read| not_read.is_private)
     }
 
-    /// The syntax after a look at the pixels: what is there counts, as programs convert pixels and forget to say so,
-    /// and private syntaxes are often plain.
+    /// Corrects the syntax by the pixels themselves: programs decompress pixels and leave the syntax unchanged, and
+    /// private syntaxes are often plain.
     ///
-    /// `length` is that of the pixels, none where they are in fragments, of which the first picture begins with `start`;
-    /// `expected` are the bytes of all pictures without compression.
+    /// `length` is the size of the pixels, `None` for fragments, the first image of which begins with `start`;
+    /// `expected` is the size of all images without compression.
     #[must_use]
     pub(crate) fn looked_at(self, length: Option<u64>, expected: Option<u64>, start: &[u8]) -> Self {
-        /// Bytes that fill up pixels.
+        /// Maximum number of padding bytes behind pixels.
         const MOST_FILL: u64 = 16;
         let is_open = match &self.codec {
             Ok(codec) => *codec != Codec::Native || length.is_none(),
@@ -197,7 +197,7 @@ impl Syntax {
         }
     }
 
-    /// Its header is read as nearly all are written; its pixels are not.
+    /// Returns a syntax whose pixels are not supported; the header is read with the most common encoding.
     fn refused(uid: &str, name: &str, help: &'static str) -> Self {
         let name = format!("{name}, {}", crate::data::plain(uid, 64));
         Self {
@@ -261,7 +261,7 @@ mod tests {
         ] {
             assert_eq!(codec(private, None, start), found, "{start:?}");
         }
-        // What is known is not guessed.
+        // Known syntaxes are not guessed.
         assert_eq!(codec("1.2.840.10008.1.2.4.201", Some(112), &[]), None);
         assert_eq!(
             codec("1.2.840.10008.1.2.4.70", Some(112), &[]),

@@ -1,15 +1,15 @@
-//! The tags of the data elements that are read (PS3.6): group and element as one number.
+//! Tags of the data elements that are read (PS3.6): group and element as one number.
 
-/// A tag.
+/// Tag of a data element: group in the upper, element in the lower 16 bits.
 pub(in crate::data::load::formats::dicom) type Tag = u32;
 
-// How the file is written.
+// Encoding of the file.
 pub(in crate::data::load::formats::dicom) const TRANSFER_SYNTAX: Tag = 0x0002_0010;
 pub(in crate::data::load::formats::dicom) const ITEM: Tag = 0xfffe_e000;
 pub(in crate::data::load::formats::dicom) const ITEM_END: Tag = 0xfffe_e00d;
 pub(in crate::data::load::formats::dicom) const SEQUENCE_END: Tag = 0xfffe_e0dd;
 
-// What it is, and of which series.
+// Object and series identification.
 pub(in crate::data::load::formats::dicom) const IMAGE_TYPE: Tag = 0x0008_0008;
 pub(in crate::data::load::formats::dicom) const SOP_CLASS: Tag = 0x0008_0016;
 pub(in crate::data::load::formats::dicom) const SOP_INSTANCE: Tag = 0x0008_0018;
@@ -25,7 +25,7 @@ pub(in crate::data::load::formats::dicom) const ACQUISITION_NUMBER: Tag = 0x0020
 pub(in crate::data::load::formats::dicom) const INSTANCE_NUMBER: Tag = 0x0020_0013;
 pub(in crate::data::load::formats::dicom) const DIRECTORY_RECORDS: Tag = 0x0004_1220;
 
-// In which order pictures of one place were taken.
+// Acquisition attributes, which distinguish images at one position.
 pub(in crate::data::load::formats::dicom) const ECHO_TIME: Tag = 0x0018_0081;
 pub(crate) const ECHO_NUMBER: Tag = 0x0018_0086;
 pub(crate) const TUBE_VOLTAGE: Tag = 0x0018_0060;
@@ -41,7 +41,7 @@ pub(crate) const FRAME_ACQUISITION_NUMBER: Tag = 0x0020_9156;
 pub(crate) const CARDIAC_PHASE: Tag = 0x0020_9241;
 pub(crate) const REFERENCE_TIME: Tag = 0x0054_1300;
 
-// Where pictures lie.
+// Position, orientation and spacing of images.
 pub(in crate::data::load::formats::dicom) const SLICE_THICKNESS: Tag = 0x0018_0050;
 pub(in crate::data::load::formats::dicom) const SPACING_BETWEEN: Tag = 0x0018_0088;
 pub(in crate::data::load::formats::dicom) const DETECTOR_SPACING: Tag = 0x0018_1164;
@@ -66,7 +66,7 @@ pub(in crate::data::load::formats::dicom) const ORIENTATION: Tag = 0x0020_0037;
 pub(in crate::data::load::formats::dicom) const PIXEL_SPACING: Tag = 0x0028_0030;
 pub(in crate::data::load::formats::dicom) const FRAME_OFFSETS: Tag = 0x3004_000c;
 
-// How pixels are stored.
+// Storage of pixels.
 pub(in crate::data::load::formats::dicom) const SAMPLES: Tag = 0x0028_0002;
 pub(in crate::data::load::formats::dicom) const PHOTOMETRIC: Tag = 0x0028_0004;
 pub(in crate::data::load::formats::dicom) const PLANAR: Tag = 0x0028_0006;
@@ -82,7 +82,7 @@ pub(in crate::data::load::formats::dicom) const FLOATS: Tag = 0x7fe0_0008;
 pub(in crate::data::load::formats::dicom) const DOUBLES: Tag = 0x7fe0_0009;
 pub(in crate::data::load::formats::dicom) const PIXELS: Tag = 0x7fe0_0010;
 
-// What values mean.
+// Meaning of values.
 pub(in crate::data::load::formats::dicom) const PADDING: Tag = 0x0028_0120;
 pub(in crate::data::load::formats::dicom) const WINDOW_CENTER: Tag = 0x0028_1050;
 pub(in crate::data::load::formats::dicom) const WINDOW_WIDTH: Tag = 0x0028_1051;
@@ -100,7 +100,7 @@ pub(crate) const REFERENCED_SEGMENT: Tag = 0x0062_000b;
 pub(crate) const SEGMENT_COLOR: Tag = 0x0062_000d;
 pub(crate) const MOST_FRACTION: Tag = 0x0062_000e;
 
-// Sequences that hold some of these.
+// Sequences that contain some of these elements.
 pub(in crate::data::load::formats::dicom) const SHARED_GROUPS: Tag = 0x5200_9229;
 pub(in crate::data::load::formats::dicom) const FRAME_GROUPS: Tag = 0x5200_9230;
 pub(in crate::data::load::formats::dicom) const DETECTORS: Tag = 0x0054_0022;
@@ -123,7 +123,7 @@ pub(in crate::data::load::formats::dicom) const CARDIAC: Tag = 0x0018_9118;
 pub(in crate::data::load::formats::dicom) const ECHO: Tag = 0x0018_9114;
 pub(in crate::data::load::formats::dicom) const DIFFUSION: Tag = 0x0018_9117;
 
-/// A tag as everybody writes it.
+/// Formats a tag in the usual notation, `(GGGG,EEEE)`.
 pub(in crate::data::load::formats::dicom) fn written(tag: Tag) -> String {
     format!("({:04X},{:04X})", tag >> 16, tag & 0xffff)
 }

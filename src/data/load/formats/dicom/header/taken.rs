@@ -1,47 +1,48 @@
-//! When and how a picture was taken: by what pictures of one place are told apart.
+//! Acquisition attributes of an image: when and how it was taken, to tell images at one position apart.
 
 use crate::data::plain;
 
-/// An attribute in which pictures of one place can differ.
+/// Attribute in which images at one position can differ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Attribute {
     /// Temporal Position Identifier (0020,0100), or Index (0020,9128).
     TemporalPosition,
-    /// Diffusion b-value, s/mm².
+    /// Diffusion b-value, in s/mm².
     BValue,
-    /// Echo Time, ms.
+    /// Echo Time (TE), in milliseconds.
     EchoTime,
-    /// Echo Number(s).
+    /// Echo Number of a multi-echo sequence.
     EchoNumber,
-    /// Inversion Time, ms.
+    /// Inversion Time (TI), in milliseconds.
     InversionTime,
-    /// Flip Angle, degrees.
+    /// Flip Angle of the excitation, in degrees.
     FlipAngle,
-    /// KVP: the voltage of an X-ray tube, kV.
+    /// Peak voltage of the X-ray tube (KVP), in kV.
     TubeVoltage,
-    /// Image Type (0008,0008) or Frame Type (0008,9007): a number of texts, in their order.
+    /// Image Type (0008,0008) or Frame Type (0008,9007), as an index into a list of distinct texts.
     ImageType,
     /// Nominal Percentage of Cardiac Phase.
     CardiacPhase,
-    /// Trigger Time, or Nominal Cardiac Trigger Delay Time, ms.
+    /// Trigger Time, or Nominal Cardiac Trigger Delay Time, in milliseconds.
     TriggerTime,
-    /// Frame Reference Time, ms.
+    /// Frame Reference Time, in milliseconds.
     ReferenceTime,
     /// Acquisition Number, or Frame Acquisition Number.
     Acquisition,
-    /// Acquisition Time, seconds of the day.
+    /// Acquisition Time, in seconds of the day.
     AcquisitionTime,
-    /// Content Time, seconds of the day.
+    /// Content Time, in seconds of the day.
     ContentTime,
-    /// Instance Number.
+    /// Instance Number of the image in its series.
     Instance,
 }
 
-/// How many [`Attribute`]s there are.
+/// Number of variants of [`Attribute`].
 const COUNT: usize = 15;
 
 impl Attribute {
-    /// All of them: what a series is made to vary comes before what merely passes while it is taken.
+    /// All attributes in order of precedence: parameters that a series varies on purpose come before times, which
+    /// merely pass during it.
     pub(crate) const ALL: [Self; COUNT] = [
         Self::TemporalPosition,
         Self::BValue,
@@ -60,7 +61,7 @@ impl Attribute {
         Self::Instance,
     ];
 
-    /// What users call it.
+    /// Returns the attribute's name for the user.
     fn name(self) -> &'static str {
         match self {
             Self::TemporalPosition => "temporal position",
@@ -91,7 +92,7 @@ impl Attribute {
         }
     }
 
-    /// Name and value in words; `image_types` are the texts that [`Self::ImageType`] counts.
+    /// Formats name and value for the user; `image_types` holds the texts that [`Self::ImageType`] indexes.
     pub(crate) fn in_words(self, value: f64, image_types: &[String]) -> String {
         let name = self.name();
         match self {
@@ -108,7 +109,7 @@ impl Attribute {
     }
 }
 
-/// What is said of each [`Attribute`] of a picture; not a number where nothing is.
+/// Values of all attributes of an image by [`Attribute`]; NaN for those not stated.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Taken([f64; COUNT]);
 
@@ -119,19 +120,19 @@ impl Default for Taken {
 }
 
 impl Taken {
-    /// The value of an attribute.
+    /// Returns the value of an attribute, if stated.
     pub(crate) fn get(&self, attribute: Attribute) -> Option<f64> {
         Some(self.0[attribute as usize]).filter(|value| !value.is_nan())
     }
 
-    /// States the value of an attribute; none says nothing.
+    /// Sets the value of an attribute; `None` changes nothing.
     pub(crate) fn set(&mut self, attribute: Attribute, value: Option<f64>) {
         if let Some(value) = value {
             self.0[attribute as usize] = value;
         }
     }
 
-    /// What is said here, or else in `all`.
+    /// Fills in attributes from `all` where this image has none.
     pub(crate) fn or(&self, all: &Self) -> Self {
         Self(std::array::from_fn(|at| if self.0[at].is_nan() { all.0[at] } else { self.0[at] }))
     }

@@ -1,15 +1,15 @@
-//! The value of a data element (PS3.5 chapter 6): numbers are text, or binary, as the element's representation has it.
+//! Value of a data element (PS3.5 chapter 6): numbers are text or binary, depending on the value representation.
 
 use super::tags::Tag;
 use crate::data::load::Endian;
 
-/// Characters of a text that are kept.
+/// Maximum number of characters kept of a text.
 const LONGEST_TEXT: usize = 256;
 
-/// Bytes of a number in text that are looked at: the representation has 16, files have more.
+/// Maximum number of bytes parsed as a decimal string: the representation allows 16, files have more.
 const LONGEST_DECIMAL: usize = 64;
 
-/// The bytes of a value.
+/// Bytes of a value, with their byte order.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Value<'a> {
     pub(super) bytes: &'a [u8],
@@ -17,7 +17,7 @@ pub(super) struct Value<'a> {
 }
 
 impl Value<'_> {
-    /// Text without what fills it up. UTF-8, or else the Latin alphabet, of which other sets share the letters of English.
+    /// Returns the text without padding: UTF-8, or else Latin-1, as other character sets share its ASCII letters.
     pub(super) fn text(&self) -> String {
         let bytes = &self.bytes[..self.bytes.len().min(4 * LONGEST_TEXT)];
         let text = match std::str::from_utf8(bytes) {
@@ -27,7 +27,7 @@ impl Value<'_> {
         text.trim_matches(|c: char| c == '\0' || c.is_whitespace()).chars().take(LONGEST_TEXT).collect()
     }
 
-    /// Numbers in text.
+    /// Parses the backslash-separated decimal strings.
     fn each_decimal(&self) -> impl Iterator<Item = Option<f64>> {
         self.bytes.split(|&byte| byte == b'\\').map(|text| {
             let text = std::str::from_utf8(text.get(..text.len().min(LONGEST_DECIMAL))?).ok()?;
@@ -36,12 +36,12 @@ impl Value<'_> {
         })
     }
 
-    /// The first number in text.
+    /// Parses the first decimal string.
     pub(super) fn decimal(&self) -> Option<f64> {
         self.each_decimal().next().flatten()
     }
 
-    /// So many numbers in text; what follows them does not count.
+    /// Parses the first `N` decimal strings; later ones are ignored.
     pub(super) fn decimals_of<const N: usize>(&self) -> Option<[f64; N]> {
         let mut numbers = [0.0; N];
         let mut found = self.each_decimal();
@@ -51,12 +51,12 @@ impl Value<'_> {
         Some(numbers)
     }
 
-    /// All numbers in text, at most so many; none where one is broken.
+    /// Parses all decimal strings, at most `most`; empty if one is invalid.
     pub(super) fn decimals(&self, most: usize) -> Vec<f64> {
         self.each_decimal().take(most).collect::<Option<_>>().unwrap_or_default()
     }
 
-    /// The time of a day, `HHMMSS.F`, in seconds.
+    /// Parses a time of day, `HHMMSS.F`, in seconds.
     pub(super) fn time_s(&self) -> Option<f64> {
         let text = self.text();
         let part = |from: usize, to: usize| text.get(from..to).and_then(|digits| digits.parse::<f64>().ok());
@@ -72,17 +72,17 @@ impl Value<'_> {
         Some(bytes)
     }
 
-    /// The first whole number of 16 bits.
+    /// Returns the first 16-bit integer.
     pub(super) fn short(&self) -> Option<u16> {
         self.first().map(u16::from_le_bytes)
     }
 
-    /// The first whole number of 32 bits.
+    /// Returns the first 32-bit integer.
     pub(super) fn long(&self) -> Option<u32> {
         self.first().map(u32::from_le_bytes)
     }
 
-    /// So many whole numbers of 16 bits; what follows them does not count.
+    /// Returns the first `N` 16-bit integers; later ones are ignored.
     pub(super) fn shorts_of<const N: usize>(&self) -> Option<[u16; N]> {
         let mut numbers = [0; N];
         for (number, bytes) in numbers.iter_mut().zip(self.bytes.get(..2 * N)?.as_chunks::<2>().0) {
@@ -91,13 +91,13 @@ impl Value<'_> {
         Some(numbers)
     }
 
-    /// The tag that it points to.
+    /// Returns the tag that the value refers to.
     pub(super) fn tag(&self) -> Option<Tag> {
         let [group, element] = self.shorts_of()?;
         Some(Tag::from(group) << 16 | Tag::from(element))
     }
 
-    /// So many numbers of 64 bits; what follows them does not count.
+    /// Returns the first `N` 64-bit floats; later ones are ignored.
     pub(super) fn doubles_of<const N: usize>(&self) -> Option<[f64; N]> {
         let mut numbers = [0.0; N];
         for (number, bytes) in numbers.iter_mut().zip(self.bytes.get(..8 * N)?.as_chunks::<8>().0) {
@@ -106,12 +106,12 @@ impl Value<'_> {
         Some(numbers)
     }
 
-    /// The first number of 64 bits.
+    /// Returns the first 64-bit float, if it is finite.
     pub(super) fn double(&self) -> Option<f64> {
         self.first().map(f64::from_le_bytes).filter(|number| number.is_finite())
     }
 
-    /// Whole numbers of 64 bits, at most so many.
+    /// Returns 64-bit integers, at most `most`.
     pub(super) fn longs(&self, most: usize) -> Vec<u64> {
         let each = self.bytes.chunks_exact(8).take(most);
         each.filter_map(|bytes| Value { bytes, ..*self }.first().map(u64::from_le_bytes)).collect()

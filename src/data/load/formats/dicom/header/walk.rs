@@ -1,5 +1,5 @@
-//! The data elements of a data set, one after the other (PS3.5 chapter 7): those that are wanted are read, all others are
-//! skipped. What is nested is kept on a list, not on the stack, and every length is checked against what surrounds it.
+//! Parser of a data set's elements, in order (PS3.5 chapter 7): those in use are read, all others are skipped.
+//! Nesting is kept on an explicit stack instead of recursion, and every length is checked against the enclosing one.
 
 use std::io;
 
@@ -11,38 +11,38 @@ use super::tags::{DOUBLES, FLOATS, ITEM, ITEM_END, PIXELS, SEQUENCE_END, Tag, wr
 use crate::data::attempt::Attempt;
 use crate::data::load::{Endian, LoadControl, LoadError};
 
-/// How deep sequences are followed: real files nest some ten of them.
+/// Maximum nesting depth of sequences: real files nest some ten.
 const DEEPEST: usize = 64;
 
-/// Most elements that are looked at: those of a hundred thousand frames.
+/// Maximum number of elements parsed: those of a hundred thousand frames.
 const MOST_ELEMENTS: usize = 1 << 24;
 
-/// Most bytes that a deflated header may have after inflating.
+/// Maximum size of a deflated header after inflating, in bytes.
 const MOST_INFLATED: u64 = 1 << 30;
 
-/// Elements between two looks at `cancel`.
+/// Number of elements between two checks for cancellation.
 const AT_ONCE: usize = 1 << 12;
 
-/// The length of what ends with a mark.
+/// Undefined length: a delimiter ends the value.
 const UNDEFINED: u32 = u32::MAX;
 
-/// Where the pixels are.
+/// Location of the pixels in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::data::load::formats::dicom) struct PixelElement {
     pub(in crate::data::load::formats::dicom) tag: Tag,
-    /// Bytes are pairs, and swapped where the order is big endian.
+    /// True if bytes are stored in 16-bit words, and so swapped in big-endian order.
     pub(in crate::data::load::formats::dicom) is_words: bool,
-    /// Where the value begins.
+    /// Byte offset of the value.
     pub(in crate::data::load::formats::dicom) offset: u64,
-    /// Its length; `None` where it is in fragments.
+    /// Length of the value in bytes; `None` if it is in fragments.
     pub(in crate::data::load::formats::dicom) length: Option<u64>,
 }
 
-/// Why a data set cannot be read.
+/// Reason why a data set cannot be parsed.
 #[derive(Debug)]
 pub(in crate::data::load::formats::dicom) enum Broken {
     Io(io::Error),
-    /// What is wrong.
+    /// Malformed data, described for the user.
     Wrong(String),
     Stopped(LoadError),
 }
@@ -71,31 +71,31 @@ impl Broken {
     }
 }
 
-/// A sequence, or an item of one, that has been entered.
+/// Sequence or item that is currently open.
 struct Level {
-    /// The sequence; `None` for an item.
+    /// Tag of the sequence; `None` for an item.
     sequence: Option<Tag>,
-    /// Items that have begun.
+    /// Number of items begun so far.
     items: usize,
     place: Place,
     is_explicit: bool,
-    /// Where it ends, if its length says so.
+    /// End offset, if the length is defined.
     end: Option<u64>,
-    /// What nothing in it may pass: its own end or that of what surrounds it.
+    /// Offset that no element within may pass: its own end, or that of the enclosing level.
     limit: u64,
 }
 
-/// An element up to its value.
+/// Head of a data element: everything before its value.
 pub(in crate::data::load::formats::dicom) struct Head {
-    /// Two letters; `None` where the form does not say them.
+    /// Value representation, two letters; `None` in implicit encoding.
     vr: Option<[u8; 2]>,
     pub(in crate::data::load::formats::dicom) length: u32,
 }
 
-/// Reads a data set up to its pixels.
+/// Parses a data set up to its pixels.
 ///
 /// # Errors
-/// What contradicts itself, ends too early, or nests too deeply.
+/// Data that contradict themselves, end too early, or nest too deeply.
 pub(in crate::data::load::formats::dicom) fn walk(
     bytes: &mut Bytes,
     form: Form,
@@ -120,7 +120,7 @@ pub(in crate::data::load::formats::dicom) fn walk(
                 (level.place, level.is_explicit, level.limit)
             });
         match tag {
-            // Zeros that fill up a file.
+            // Zeros that pad a file.
             0 if open.is_empty() => return Ok(None),
             ITEM => {
                 let length = bytes.u32(endian)?;
@@ -143,7 +143,7 @@ pub(in crate::data::load::formats::dicom) fn walk(
             }
             ITEM_END | SEQUENCE_END => {
                 bytes.u32(endian)?;
-                // Marks where nothing is open are written by some after lengths, and harmless.
+                // Some programs write delimiters after defined lengths as well; they are harmless.
                 if open.last().is_some_and(|level| level.sequence.is_some() == (tag == SEQUENCE_END)) {
                     open.pop();
                 }
@@ -190,7 +190,7 @@ pub(in crate::data::load::formats::dicom) fn walk(
                             sequence: Some(tag),
                             items: 0,
                             place: inside.unwrap_or(Place::Elsewhere),
-                            // What nobody could name was written as it was received: without representations.
+                            // Content of unknown representation (UN) is copied as received, in implicit encoding.
                             is_explicit: is_explicit && head.vr == Some(*b"SQ"),
                             end,
                             limit: end.unwrap_or(limit),
@@ -207,7 +207,7 @@ fn is_pixels(tag: Tag) -> bool {
     matches!(tag, PIXELS | FLOATS | DOUBLES)
 }
 
-/// The representation and the length of an element.
+/// Reads the value representation and length of an element.
 pub(in crate::data::load::formats::dicom) fn head(
     bytes: &mut Bytes,
     is_explicit: bool,
@@ -232,12 +232,12 @@ pub(in crate::data::load::formats::dicom) fn head(
             };
             Ok(Head { vr: Some(vr), length: u32::from(length) })
         }
-        // An element without one among others that have one: some programs paste private data so.
+        // An element without representation among explicit ones: some programs insert private data like that.
         _ => Ok(Head { vr: None, length: of([a, b, c, d]) }),
     }
 }
 
-/// Where something ends that begins at `at`; `None` where a mark says so.
+/// Returns the end offset of a value that begins at `at`; `None` if its length is undefined.
 fn end_of(at: u64, length: u32, limit: u64, tag: Tag) -> Result<Option<u64>, Broken> {
     if length == UNDEFINED {
         return Ok(None);
@@ -253,7 +253,7 @@ fn end_of(at: u64, length: u32, limit: u64, tag: Tag) -> Result<Option<u64>, Bro
     Ok(Some(end))
 }
 
-/// As [`end_of`]; pixels that are cut off are found out later, with better words.
+/// Returns the end offset of an element's value; truncated pixels are detected later, with a clearer message.
 fn end_of_value(at: u64, head: &Head, limit: u64, tag: Tag, is_top: bool) -> Result<Option<u64>, Broken> {
     if is_top && is_pixels(tag) && head.length != UNDEFINED {
         return Ok(Some(at.saturating_add(u64::from(head.length)).min(limit).max(at)));
@@ -261,9 +261,9 @@ fn end_of_value(at: u64, head: &Head, limit: u64, tag: Tag, is_top: bool) -> Res
     end_of(at, head.length, limit, tag)
 }
 
-/// Skips pixels in fragments that are not the picture's own: those of a small picture in a header.
+/// Skips fragments that are not those of the image itself, such as an icon's.
 fn skip_fragments(bytes: &mut Bytes, endian: Endian, limit: u64) -> Result<(), Broken> {
-    // Each takes 8 bytes: there are no more than the file has room for.
+    // Each fragment takes at least 8 bytes, so the file size bounds their number.
     while let Some(tag) = bytes.tag(endian)? {
         let length = bytes.u32(endian)?;
         match tag {

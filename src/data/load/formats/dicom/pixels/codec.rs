@@ -1,7 +1,7 @@
-//! Pictures that are compressed, one by one, to pixels as they would be stored without compression.
+//! Decompression of single images, to pixels as they would be stored without compression.
 //!
-//! The decoders are made for pictures from anywhere; still nothing is decoded before the size that a picture itself says
-//! is that of the header.
+//! The decoders accept images from untrusted sources; still, nothing is decoded before the size that an image itself
+//! states is compared with that of the header.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -13,25 +13,25 @@ use super::shape::{Colors, Shape};
 use super::{extended, jpeg_ls, rle};
 use crate::data::plain;
 
-/// A picture without compression: numbers with their lowest byte first, the colours of a pixel side by side.
+/// Decompressed image: little-endian numbers, colours interleaved.
 #[derive(Debug)]
 pub(super) struct Unpacked {
     pub(super) bytes: Vec<u8>,
-    /// How the pixels are stored now.
+    /// Pixel layout of the decompressed image.
     pub(super) shape: Shape,
 }
 
-/// Unpacks a picture.
+/// Decompresses an image.
 ///
 /// # Errors
-/// What is wrong with it.
+/// A message that tells what is wrong with the image.
 pub(super) fn unpack(codec: Codec, packed: Vec<u8>, shape: Shape) -> Result<Unpacked, String> {
     let interleaved = Shape {
         is_planar: false,
         colors: if shape.colors == Colors::YbrPairs { Colors::Ybr } else { shape.colors },
         ..shape
     };
-    // A decoder that stumbles takes the picture with it, not the program.
+    // A decoder that panics must cost the image, not the program.
     let guarded = |decode: &mut dyn FnMut() -> Result<Unpacked, String>| {
         catch_unwind(AssertUnwindSafe(decode))
             .unwrap_or_else(|_| Err("a picture is broken in a way that its decoder does not know".to_owned()))
@@ -46,7 +46,7 @@ pub(super) fn unpack(codec: Codec, packed: Vec<u8>, shape: Shape) -> Result<Unpa
     }
 }
 
-/// What a decoder says is wrong.
+/// Formats a decoder's error for the user.
 fn broken(error: impl std::fmt::Display) -> String {
     format!("a picture is broken, or of a kind that is not read: {}", plain(&error.to_string(), 120))
 }
@@ -68,7 +68,7 @@ fn check_samples(found: usize, shape: &Shape) -> Result<(), String> {
     Err(format!("a picture has {found} numbers a pixel where the header says {expected}"))
 }
 
-/// ITU-T T.81: sequential of 8 and 12 bits, progressive, and lossless up to 16 bits.
+/// Decodes JPEG (ITU-T T.81): sequential of 8 and 12 bits, progressive, and lossless up to 16 bits.
 fn jpeg(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
     let mut decoder = Decoder::new(packed);
     match decoder.read_info() {
@@ -92,7 +92,7 @@ fn jpeg(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
     let numbers = shape.pixels() * samples;
     decoder.set_max_decoding_buffer_size(numbers.saturating_mul(2));
     let mut decoded = decoder.decode().map_err(broken)?;
-    // Without loss, colours stay as they are.
+    // Lossless JPEG leaves the colour space unchanged.
     let colors = if samples == 3 && !is_lossless { Colors::Rgb } else { shape.colors };
     let bytes = match (decoded.len() == numbers, shape.bytes()) {
         (true, 1) => decoded,
@@ -110,14 +110,14 @@ fn jpeg(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
     checked(bytes, Shape { colors, ..shape })
 }
 
-/// The same of 12 bits with loss (JPEG Extended, 1.2.840.10008.1.2.4.51).
+/// Decodes lossy JPEG of 12 bits (JPEG Extended, 1.2.840.10008.1.2.4.51).
 fn extended(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
     let extended::Header { width, height, components, .. } = extended::header(packed).map_err(broken)?;
     let decode = || extended::decode(packed).map(|picture| picture.numbers);
     if_as_said([width, height], components, shape, decode)
 }
 
-/// The numbers of a picture, which are decoded if it has the size and the numbers a pixel that the header says.
+/// Decodes an image if its size and number of components are those of the header.
 fn if_as_said(
     [width, height]: [usize; 2],
     components: usize,
@@ -130,18 +130,18 @@ fn if_as_said(
     checked(contained(numbers, shape.bytes()), shape)
 }
 
-/// ITU-T T.87.
+/// Decodes JPEG-LS (ITU-T T.87), lossless or near-lossless.
 fn jpeg_ls(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
     let jpeg_ls::Header { width, height, components, .. } = jpeg_ls::header(packed).map_err(broken)?;
     let decode = || jpeg_ls::decode(packed).map(|picture| picture.numbers);
     if_as_said([width, height], components, shape, decode)
 }
 
-/// The size of a picture of JPEG 2000 as its first segment says it (ITU-T T.800 section A.5.1).
+/// Size and components of a JPEG 2000 image, from its SIZ segment (ITU-T T.800 section A.5.1).
 struct Size {
     pixels: [u64; 2],
     tiles: u64,
-    /// Of each number: whether it has a sign, and its bits.
+    /// Sign flag and bit depth of each component.
     numbers: Vec<(bool, u32)>,
 }
 
@@ -165,19 +165,19 @@ impl Size {
     }
 }
 
-/// The start of a stream, and of the segment that says its size.
+/// Magic bytes of a codestream: its start, and the SIZ segment.
 const JPEG_2000_START: [u8; 4] = [0xff, 0x4f, 0xff, 0x51];
 
-/// How far into a picture its stream is looked for: some put it into a file of its own.
+/// Maximum offset at which the codestream is searched for: some programs wrap it in a file format.
 const STREAM_WITHIN: usize = 1 << 16;
 
-/// Tiles are numbered with 16 bits.
+/// Maximum number of tiles: their indices have 16 bits.
 const MOST_TILES: u64 = 1 << 16;
 
-/// The decoder computes with numbers that are exact up to so many bits.
+/// Maximum bit depth: the decoder's numbers are exact up to this many bits.
 const MOST_BITS: u32 = 24;
 
-/// ITU-T T.800.
+/// Decodes JPEG 2000 (ITU-T T.800), lossless or lossy.
 fn jpeg_2000(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
     let within = &packed[..packed.len().min(STREAM_WITHIN)];
     let start = within.windows(4).position(|four| four == JPEG_2000_START);
@@ -205,7 +205,7 @@ fn jpeg_2000(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
     }
     let numbers = (0..shape.pixels()).flat_map(|pixel| {
         components.iter().zip(&size.numbers).map(move |(component, &(is_signed, bits))| {
-            // The decoder gives all of them from 0 on: those with a sign are half a range too high.
+            // The decoder outputs all components from 0 up: signed ones are half a range too high.
             let most = 2f64.powi(bits as i32) - 1.0;
             let value = f64::from(component.samples()[pixel]).round().clamp(0.0, most) as i64;
             (if is_signed { value - (1 << (bits - 1)) } else { value }) as u32
@@ -214,7 +214,7 @@ fn jpeg_2000(packed: &[u8], shape: Shape) -> Result<Unpacked, String> {
     checked(contained(numbers, shape.bytes()), shape)
 }
 
-/// Numbers in so many bytes each.
+/// Stores numbers in `size` bytes each, little-endian.
 fn contained(numbers: impl Iterator<Item = u32>, size: usize) -> Vec<u8> {
     match size {
         1 => numbers.map(|number| number as u8).collect(),

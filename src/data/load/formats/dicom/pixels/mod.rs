@@ -1,4 +1,4 @@
-//! Pixels: how they are stored, where they are, how they are unpacked, and what voxels they become.
+//! DICOM pixels: storage layout, location, decompression, and conversion to voxels.
 
 mod codec;
 mod extended;

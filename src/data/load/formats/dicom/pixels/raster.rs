@@ -1,17 +1,17 @@
-//! Pixels as they are stored to voxels.
+//! Conversion of stored pixels to voxels.
 
 use super::shape::{Colors, PixelNumber, Shape};
 use crate::data::load::Endian;
 use crate::data::load::reading::number::Part;
 
-/// A type that voxels have.
+/// Number type that voxels can have.
 pub(in crate::data::load::formats::dicom) trait Voxel:
     Copy + Default + Send + Sync
 {
-    /// Nothing: not a number, or 0 where every number is one.
+    /// Value of unmeasured voxels: NaN, or 0 for integer types.
     const NOTHING: Self;
     fn value(self) -> f64;
-    /// The nearest to a mean of values of this type.
+    /// Converts a mean of values of this type, rounding to integers if needed.
     fn of_mean(mean: f64) -> Self;
     fn of_integer(value: i64) -> Self;
     fn of_float(value: f64) -> Self;
@@ -30,7 +30,7 @@ macro_rules! voxel {
                 ($round)(mean) as Self
             }
 
-            // Every value that is stored fits into the type that was chosen for it.
+            // The type was chosen so that every stored value fits.
             fn of_integer(value: i64) -> Self {
                 value as Self
             }
@@ -71,19 +71,19 @@ impl Voxel for f64 {
     }
 }
 
-/// How pixels become voxels.
+/// Conversion of pixels to voxels: layout, byte order, part of colours, scale.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::data::load::formats::dicom) struct Raster {
     pub(in crate::data::load::formats::dicom) shape: Shape,
     pub(in crate::data::load::formats::dicom) endian: Endian,
-    /// What is shown of colours.
+    /// Scalar that is derived from a colour.
     pub(in crate::data::load::formats::dicom) part: Part,
-    /// Slope and intercept, where each picture has its own.
+    /// Slope and intercept, if each image has its own.
     pub(in crate::data::load::formats::dicom) scale: Option<[f64; 2]>,
 }
 
 impl Raster {
-    /// Turns as many pixels into voxels as there are voxels; `bytes` are theirs and no more.
+    /// Converts as many pixels as there are voxels; `bytes` holds exactly those.
     pub(in crate::data::load::formats::dicom) fn write<T: Voxel>(&self, bytes: &[u8], voxels: &mut [T]) {
         if self.shape.samples > 1 {
             return self.write_colors(bytes, voxels);
@@ -158,7 +158,7 @@ impl Raster {
         };
         for (pixel, voxel) in voxels.iter_mut().enumerate() {
             let stored = match (self.shape.colors, self.shape.is_planar) {
-                // Y0 Y1 B R for every two.
+                // Two pixels are stored as Y0 Y1 Cb Cr.
                 (Colors::YbrPairs, _) => {
                     let pair = pixel / 2 * 4;
                     [number(pair + pixel % 2), number(pair + 2), number(pair + 3)]
@@ -176,7 +176,7 @@ impl Raster {
     }
 }
 
-/// Red, green and blue (PS3.3 section C.7.6.3.1.2), within 0 … `most` − 1.
+/// Converts YCbCr to red, green and blue (PS3.3 section C.7.6.3.1.2), clamped to 0 … `most` − 1.
 fn rgb_of_ybr([y, b, r]: [f64; 3], most: f64) -> [f64; 3] {
     let (b, r) = (b - most / 2.0, r - most / 2.0);
     let rgb = [y + 1.402 * r, y - 0.344_136 * b - 0.714_136 * r, y + 1.772 * b];

@@ -1,12 +1,12 @@
-//! DICOM's run-length code (PS3.5 annex G): a plane for each byte of a pixel, the highest first, each packed.
+//! DICOM's RLE codec (PS3.5 annex G): one byte plane per byte of a pixel, highest first, each packed with `PackBits`.
 
-/// Bytes before the first plane: how many there are, and where up to 15 begin.
+/// Size of the header in bytes: the number of planes, and the offsets of up to 15.
 const HEADER: usize = 64;
 
-/// Unpacks a picture of so many pixels: its bytes, the lowest of a number first, the colours of a pixel side by side.
+/// Decodes an image of `pixels` pixels: little-endian numbers, colours interleaved.
 ///
 /// # Errors
-/// What is wrong with it.
+/// A message that tells what is wrong with the image.
 pub(super) fn decode(
     packed: &[u8],
     pixels: usize,
@@ -22,7 +22,7 @@ pub(super) fn decode(
     if said != planes || packed.len() < HEADER {
         return Err(format!("a picture has {said} planes of bytes where {planes} are expected"));
     }
-    // Two bytes stand for 128 at most: what cannot be there is not made room for.
+    // Two bytes encode at most 128: data that cannot be complete get no memory.
     if packed.len().saturating_mul(64) < pixels.saturating_mul(planes) {
         return Err(format!("a picture is cut off: {} bytes cannot hold {pixels} pixels", packed.len()));
     }
@@ -45,7 +45,7 @@ pub(super) fn decode(
     Ok(unpacked)
 }
 
-/// Unpacks bytes in order; how many there were, at most as many as there is room for.
+/// Decodes a plane's bytes in order; returns their number, at most as many as `into` takes.
 fn unpack<'a>(packed: &[u8], mut into: impl Iterator<Item = &'a mut u8>) -> usize {
     let mut done = 0;
     let mut rest = packed;
@@ -90,7 +90,7 @@ mod tests {
 
     #[test]
     fn runs_and_literals_are_unpacked_plane_by_plane() {
-        // High bytes 1 1 1 2, low bytes 3 4 5 6, and a byte that fills up.
+        // High bytes 1 1 1 2, low bytes 3 4 5 6, and a padding byte.
         let bytes = packed(&[&[254, 1, 128, 0, 2], &[3, 3, 4, 5, 6, 0]]);
         assert_eq!(decode(&bytes, 4, 1, 2).unwrap(), [3, 1, 4, 1, 5, 1, 6, 2]);
         let colors = packed(&[&[1, 1, 2], &[1, 3, 4], &[1, 5, 6]]);

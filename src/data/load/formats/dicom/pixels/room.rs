@@ -1,4 +1,4 @@
-//! Whether a file has room for the frames that it announces, before any of them is made room for.
+//! Plausibility of file sizes: the announced frames must fit in the file before memory for them is allocated.
 
 use super::super::header::Header;
 use super::super::header::syntax::{Codec, NotRead};
@@ -6,21 +6,21 @@ use super::shape::{PixelNumber, Shape};
 use crate::data::attempt::Attempt;
 use crate::data::load::LoadError;
 
-/// What helps with files that are not whole.
+/// Advice for files that are incomplete.
 pub(super) const HELP_COPY: &str = "copy or export the file again";
 
 impl Codec {
-    /// How many bytes of pixels can be in so many bytes of a file. Decoders take time and memory for all of them, whatever
-    /// there is.
+    /// Returns the maximum number of pixel bytes that `packed` bytes of a file can encode. Decoders take time and
+    /// memory for all announced pixels, whatever the data hold.
     fn most(self, packed: u64, frames: u64, shape: &Shape) -> u64 {
         let of_number = shape.bytes() as u64;
         match self {
             Self::Native => u64::MAX,
-            // A byte is repeated 128 times by two (PS3.5, G.3.1).
+            // Two bytes repeat a byte at most 128 times (PS3.5, G.3.1).
             Self::Rle => packed.saturating_mul(64),
-            // A bit for each block of 8 x 8 numbers, of which some stand for four.
+            // At least one bit per block of 8 x 8 numbers, some of which stand for four pixels each.
             Self::Jpeg => packed.saturating_mul(8 * 64 * 2 * of_number),
-            // Runs and empty packets know no limit; pictures of one grey are a few hundred bytes.
+            // Runs and empty packets have no bound; uniform images take a few hundred bytes.
             Self::JpegLs | Self::Jpeg2000 => {
                 let with_empty = packed.saturating_add(frames.saturating_mul(MOST_EMPTY));
                 with_empty.saturating_mul(MOST_EMPTY * of_number)
@@ -29,17 +29,17 @@ impl Codec {
     }
 }
 
-/// Bytes that are added to those of a picture of which hardly any are needed; and numbers that one of them can stand for:
-/// 4096² of one grey fit in none.
+/// Bytes added to the size of each compressed image, as nearly empty ones take hardly any; also the numbers that a
+/// byte may encode. A uniform image of 4096² pixels thus fits in no bytes at all.
 const MOST_EMPTY: u64 = 4096;
 
-/// Deflate makes at most so many bytes of one.
+/// Maximum expansion ratio of Deflate, in bytes per compressed byte.
 const MOST_DEFLATED: u64 = 1032;
 
-/// How the pixels of a file are compressed.
+/// Returns the codec of a file's pixels.
 ///
 /// # Errors
-/// `BadInput` where that is not read.
+/// `BadInput` if the codec is not supported.
 pub(crate) fn readable_codec(attempt: Attempt<'_>, header: &Header) -> Result<Codec, LoadError> {
     header.syntax.codec.as_ref().copied().map_err(|NotRead { name, help, .. }| {
         attempt.bad_input(
@@ -50,7 +50,7 @@ pub(crate) fn readable_codec(attempt: Attempt<'_>, header: &Header) -> Result<Co
     })
 }
 
-/// Checks that a file has room for the frames that it announces, before any of them is made room for.
+/// Checks that the file is large enough for the frames that it announces, before memory for them is allocated.
 pub(in crate::data::load::formats::dicom) fn check_room(
     attempt: Attempt<'_>,
     header: &Header,
@@ -62,7 +62,7 @@ pub(in crate::data::load::formats::dicom) fn check_room(
     let is_roomy =
         |codec: Codec| shape.bytes_of_frame().saturating_mul(count) <= codec.most(left, count, shape);
     match pixels.length {
-        // A fragment begins with 8 bytes.
+        // Each fragment begins with 8 bytes of tag and length.
         None if count > left / 8 => Err(attempt.bad_input(
             "Number of Frames",
             format!("the file has no room for the {count} frames that it announces"),
@@ -78,7 +78,7 @@ pub(in crate::data::load::formats::dicom) fn check_room(
         }
         None => Ok(()),
         Some(length) => {
-            // Frames without pixels are not without end.
+            // Bounds the number of frames even if they have no pixels.
             let least = if shape.number == PixelNumber::Bit { 0 } else { count };
             let expected = shape.stored_bytes(count).max(least);
             let most =

@@ -1,4 +1,4 @@
-//! How the pixels of a picture are stored (PS3.3 section C.7.6.3).
+//! Pixel layout of an image: size, components, colour space, and bits (PS3.3 section C.7.6.3).
 
 use super::super::header::Header;
 use super::super::header::tags::{DOUBLES, FLOATS};
@@ -6,60 +6,60 @@ use crate::data::VoxelType;
 use crate::data::attempt::{Attempt, quoted};
 use crate::data::load::LoadError;
 
-/// How pixels are stored.
+/// Pixel layout of an image, as stored without compression.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(in crate::data::load::formats::dicom) struct Shape {
     pub(in crate::data::load::formats::dicom) columns: usize,
     pub(in crate::data::load::formats::dicom) rows: usize,
-    /// Numbers of each pixel.
+    /// Number of components per pixel.
     pub(in crate::data::load::formats::dicom) samples: usize,
-    /// All numbers of one colour come before those of the next.
+    /// True if colours are planar: all numbers of one before those of the next.
     pub(in crate::data::load::formats::dicom) is_planar: bool,
     pub(in crate::data::load::formats::dicom) colors: Colors,
     pub(in crate::data::load::formats::dicom) number: PixelNumber,
 }
 
-/// What the numbers of a pixel are.
+/// Colour space, or meaning of grey values (Photometric Interpretation).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(in crate::data::load::formats::dicom) enum Colors {
-    /// More is brighter.
+    /// Grey values, higher is brighter (MONOCHROME2).
     Grey,
-    /// More is darker.
+    /// Grey values, higher is darker (MONOCHROME1).
     Inverted,
-    /// Numbers of colours in a table.
+    /// Indices into a table of colours.
     Palette,
     Rgb,
-    /// Luminance and two differences of colour (ITU-R BT.601, full range).
+    /// Luminance and two colour differences (ITU-R BT.601, full range).
     Ybr,
-    /// The same, where two pixels share the differences.
+    /// Luminance and colour differences, which every two pixels share (4:2:2).
     YbrPairs,
 }
 
-/// How a number is stored.
+/// Storage of one number of a pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(in crate::data::load::formats::dicom) enum PixelNumber {
-    /// One bit, eight of them in a byte, the first the lowest; frames follow each other without a gap (PS3.5 section 8.1).
+    /// Single bit, eight to a byte, lowest bit first; frames follow each other without a gap (PS3.5 section 8.1).
     Bit,
     Integer(Bits),
     F32,
     F64,
 }
 
-/// Where the bits of a whole number are.
+/// Position of an integer's bits within its storage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(in crate::data::load::formats::dicom) struct Bits {
-    /// That it takes in the file: 8, 16 or 32.
+    /// Number of bits in the file: 8, 16 or 32.
     pub(in crate::data::load::formats::dicom) allocated: u32,
-    /// That count.
+    /// Number of bits that carry the value.
     pub(in crate::data::load::formats::dicom) stored: u32,
-    /// The highest of these.
+    /// Index of the highest bit that carries the value.
     pub(in crate::data::load::formats::dicom) high: u32,
-    /// Two's complement.
+    /// True for integers in two's complement.
     pub(in crate::data::load::formats::dicom) is_signed: bool,
 }
 
 impl Shape {
-    /// How the pixels of a file are stored.
+    /// Derives the pixel layout from a file's header.
     pub(in crate::data::load::formats::dicom) fn of(
         attempt: Attempt<'_>,
         header: &Header,
@@ -112,12 +112,12 @@ impl Shape {
         Ok(shape)
     }
 
-    /// Pixels of a picture.
+    /// Returns the number of pixels of an image.
     pub(in crate::data::load::formats::dicom) fn pixels(&self) -> usize {
         self.columns * self.rows
     }
 
-    /// Bytes of a number; a bit takes a byte once it is unpacked.
+    /// Returns the size of a number in bytes; a single bit takes a byte once it is unpacked.
     pub(in crate::data::load::formats::dicom) fn bytes(&self) -> usize {
         match self.number {
             PixelNumber::Bit => 1,
@@ -127,18 +127,18 @@ impl Shape {
         }
     }
 
-    /// Bytes of two pixels, side by side, as they are stored without compression.
+    /// Returns the size of two adjacent pixels in bytes, as stored without compression.
     pub(in crate::data::load::formats::dicom) fn bytes_of_pair(&self) -> usize {
         let numbers = if self.colors == Colors::YbrPairs { 4 } else { 2 * self.samples };
         numbers * self.bytes()
     }
 
-    /// Bytes of a picture without compression.
+    /// Returns the size of an image in bytes, without compression.
     pub(in crate::data::load::formats::dicom) fn bytes_of_frame(&self) -> u64 {
         (self.pixels() as u64 * self.bytes_of_pair() as u64).div_ceil(2)
     }
 
-    /// Bytes of so many frames as they are stored without compression, no more than can be counted.
+    /// Returns the size of this many frames in bytes, as stored without compression; saturating.
     pub(crate) fn stored_bytes(&self, frames: u64) -> u64 {
         match self.number {
             PixelNumber::Bit => (self.pixels() as u64).saturating_mul(frames).div_ceil(8),
@@ -146,7 +146,7 @@ impl Shape {
         }
     }
 
-    /// The type of voxels that have what is stored.
+    /// Returns the voxel type that holds the stored values.
     pub(in crate::data::load::formats::dicom) fn voxel_type(&self) -> VoxelType {
         match self.number {
             PixelNumber::Bit => VoxelType::U8,
@@ -164,7 +164,7 @@ impl Shape {
     }
 }
 
-/// Where the bits of numbers are; what cannot be is taken as nearly all files have it.
+/// Reads the bit layout of the header; impossible values are replaced by the most common ones.
 fn bits(attempt: Attempt<'_>, header: &Header) -> Result<Bits, LoadError> {
     let found = &header.found;
     let allocated = u32::from(found.bits_allocated.unwrap_or(16));
@@ -184,7 +184,7 @@ fn bits(attempt: Attempt<'_>, header: &Header) -> Result<Bits, LoadError> {
 }
 
 impl Bits {
-    /// The value of a number as it is stored.
+    /// Extracts the value of a stored number, with sign extension.
     pub(in crate::data::load::formats::dicom) fn value(self, raw: u32) -> i64 {
         let shifted = raw >> (self.high + 1 - self.stored);
         let unused = 32 - self.stored;

@@ -1,4 +1,4 @@
-//! Where the pixels of a file's frames are, and how they are fetched.
+//! Pixel data of a DICOM file: location of the frames, and reading of single frames.
 
 use std::io::{self, Read as _};
 
@@ -16,20 +16,20 @@ use crate::data::load::reading::input::Input;
 use crate::data::load::reading::read_files::note;
 use crate::data::load::{Endian, LoadControl, LoadError};
 
-/// Most fragments that are looked at: 16 for each of the most frames.
+/// Maximum number of fragments: 16 for each of the maximum number of frames.
 const MOST_FRAGMENTS: usize = 1 << 22;
 
-/// Pixels that are read at a time; an even number.
+/// Number of pixels read at a time; must be even.
 const PIXELS_AT_ONCE: usize = 1 << 18;
 
-/// A piece of compressed pixels.
+/// Fragment of compressed pixels: position in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Fragment {
     offset: u64,
     length: u32,
 }
 
-/// Where pixels are.
+/// Pixel data of a file, with the layout of its images.
 #[derive(Debug)]
 pub(in crate::data::load::formats::dicom) struct Store {
     shape: Shape,
@@ -38,16 +38,16 @@ pub(in crate::data::load::formats::dicom) struct Store {
 
 #[derive(Debug)]
 enum Kept {
-    /// In the file, frame after frame.
+    /// Native frames in the file, one after the other.
     Plain { offset: u64, endian: Endian, is_swapped: bool },
-    /// Here, frame after frame.
+    /// Inflated frames in memory, one after the other.
     Inflated(Vec<u8>),
-    /// In the file, each frame in pieces.
+    /// Compressed frames in the file, each in one or several fragments.
     Packed { codec: Codec, frames: Vec<Vec<Fragment>> },
 }
 
 impl Store {
-    /// Finds the frames of a file, so many of them.
+    /// Locates the frames of a file, as many as its header announces.
     pub(in crate::data::load::formats::dicom) fn of(
         header: &Header,
         shape: Shape,
@@ -138,7 +138,7 @@ impl Store {
         loop {
             control.check()?;
             let tag = bytes.tag(Endian::Little).map_err(|error| attempt.io(error))?;
-            // Without an end mark what is there counts: the decoder will know whether it is whole.
+            // Without a delimiter the fragments found so far count: the decoder detects incomplete ones.
             let (Some(ITEM), Ok(length)) = (tag, bytes.u32(Endian::Little)) else {
                 if matches!(tag, None | Some(SEQUENCE_END | ITEM)) {
                     break;
@@ -154,7 +154,7 @@ impl Store {
             }
             if is_first {
                 is_first = false;
-                // A table that does not fit the frames says nothing.
+                // An offset table whose size does not match the number of frames is ignored.
                 if u64::from(length) == count.saturating_mul(4) {
                     table = starts(&bytes.value(u64::from(length)).map_err(|error| attempt.io(error))?);
                 } else {
@@ -178,12 +178,12 @@ impl Store {
         Ok(Kept::Packed { codec, frames })
     }
 
-    /// How its pictures are stored.
+    /// Returns the pixel layout of the stored images.
     pub(crate) fn shape(&self) -> Shape {
         self.shape
     }
 
-    /// Reads a frame's voxels.
+    /// Reads the voxels of a frame.
     pub(in crate::data::load::formats::dicom) fn read<T: Voxel>(
         &self,
         attempt: Attempt<'_>,
@@ -208,7 +208,7 @@ impl Store {
                 let mut block = Vec::new();
                 for voxels in voxels.chunks_mut(at_once.max(1)) {
                     control.check()?;
-                    // A last byte of a picture of odd size belongs to a pair with the next.
+                    // The last byte of an image of odd size shares a 16-bit word with the next image.
                     let bytes = (voxels.len() * self.shape.bytes_of_pair()).div_ceil(2);
                     block.resize(bytes + usize::from(*is_swapped && !bytes.is_multiple_of(2)), 0);
                     input.reader.read_exact(&mut block).map_err(|error| attempt.io(error))?;
@@ -245,7 +245,7 @@ impl Store {
 }
 
 impl Store {
-    /// As [`Self::read`], of pixels of one bit.
+    /// Reads the voxels of a frame of one-bit pixels.
     fn read_bits<T: Voxel>(
         &self,
         attempt: Attempt<'_>,
@@ -256,7 +256,7 @@ impl Store {
         let beyond = || attempt.bad_input("Number of Frames", "it has fewer frames than it says", HELP_COPY);
         let pixels = self.shape.pixels() as u64;
         let first = pixels.checked_mul(frame as u64).ok_or_else(beyond)?;
-        // From the word on in which the frame begins, where bytes are swapped within words.
+        // Begins at the 16-bit word that contains the frame's first bit, as bytes may be swapped within words.
         let start = first / 16 * 2;
         let skipped = (first - start * 8) as usize;
         let length = (skipped as u64 + pixels).div_ceil(16) * 2;
@@ -294,7 +294,7 @@ impl Store {
     }
 }
 
-/// The bytes of pieces, one after the other. They lie in the file, as has been checked.
+/// Reads and concatenates the bytes of fragments, whose positions have been checked.
 fn fetch(attempt: Attempt<'_>, fragments: &[Fragment]) -> Result<Vec<u8>, LoadError> {
     let mut packed = Vec::new();
     let mut input = Input::open(attempt)?;
@@ -306,12 +306,13 @@ fn fetch(attempt: Attempt<'_>, fragments: &[Fragment]) -> Result<Vec<u8>, LoadEr
     Ok(packed)
 }
 
-/// The numbers of a table of where frames begin.
+/// Parses a basic offset table: 32-bit offsets of the frames.
 fn starts(bytes: &[u8]) -> Vec<u64> {
     bytes.as_chunks().0.iter().map(|&word| u64::from(u32::from_le_bytes(word))).collect()
 }
 
-/// Which pieces make which frame: one all, each its own, or as the table says, which counts from the first piece's item on.
+/// Assigns fragments to frames: all to a single frame, one to each, or as the offset table says, which counts from
+/// the first fragment's item. `None` if they do not match.
 fn in_frames(fragments: Vec<Fragment>, table: &[u64], count: u64) -> Option<Vec<Vec<Fragment>>> {
     if count == 1 && !fragments.is_empty() {
         return Some(vec![fragments]);
@@ -319,7 +320,7 @@ fn in_frames(fragments: Vec<Fragment>, table: &[u64], count: u64) -> Option<Vec<
     if fragments.len() as u64 == count {
         return Some(fragments.into_iter().map(|fragment| vec![fragment]).collect());
     }
-    // Each piece has an item's tag and length before it.
+    // Offsets of items and of their data differ by the same 8 bytes of tag and length.
     let first = fragments.first()?.offset;
     let mut frames: Vec<Vec<Fragment>> = Vec::new();
     for fragment in fragments {

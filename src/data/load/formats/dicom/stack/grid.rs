@@ -1,38 +1,39 @@
-//! An even grid of layers for slices that lie along a line: every slice at its own place, whatever is missing.
+//! Regular grid of layers for slices along a line: every slice keeps its position, whatever is missing.
 
 use crate::data::load::formats::dicom::layer::{Filling, Layer};
 
-/// How far from where an even grid has it a slice may lie, as a share of the distance between two.
+/// Tolerance of a slice's position on an even grid, as a share of the spacing.
 const EVEN: f64 = 0.05;
 
-/// How far the distance of a grid may be from that which it was sought with, as a share.
+/// Maximum deviation of a grid's fitted spacing from the candidate spacing, as a share.
 const MOST_OFF: f64 = 0.1;
 
-/// Layers that an even grid may have for each slice: more would be made up than was measured.
+/// Maximum number of layers per slice of an even grid: beyond it, more would be interpolated than was measured.
 const MOST_LAYERS_A_SLICE: usize = 4;
 
-/// Layers beyond those, so that the few slices of a small volume may lie far apart.
+/// Additional layers, so that the few slices of a small volume may be far apart.
 const MORE_LAYERS: usize = 256;
 
-/// Most layers of segments, of which only slices with something in them are stored: four times the longest scans.
+/// Maximum number of layers of a segmentation, which stores only non-empty slices: four times the longest scans.
 const MOST_LAYERS_OF_SEGMENTS: usize = 1 << 14;
 
-/// Missing slices that are interpolated. Across more a straight line says nothing of what lies there.
+/// Maximum number of consecutive missing slices that are interpolated; linear interpolation across longer gaps is
+/// meaningless.
 const MOST_BRIDGED: f64 = 3.0;
 
-/// Layers at even distances.
+/// Layers with constant spacing, made from slices.
 #[derive(Debug)]
 pub(crate) struct SliceGrid {
     pub(crate) layers: Vec<Layer>,
-    /// Between two layers, in the unit of the slices' places.
+    /// Spacing of the layers, in the unit of the slices' positions.
     pub(crate) distance: f64,
     pub(crate) remark: Option<String>,
 }
 
 impl SliceGrid {
-    /// The grid of slices at ascending places, millimetres; at least two.
+    /// Builds the grid of slices at ascending positions, in millimetres; at least two.
     ///
-    /// `distance_mm` is that which the header says between segments' slices.
+    /// `distance_mm` is the spacing that the header states, used for segments only.
     pub(crate) fn new(places_mm: &[f64], filling: Filling, distance_mm: Option<f64>) -> Self {
         let (first, last) = (places_mm[0], places_mm[places_mm.len() - 1]);
         let span = last - first;
@@ -82,7 +83,7 @@ impl SliceGrid {
         }
     }
 
-    /// The grid of slices at these whole steps of it.
+    /// Builds the grid of slices that lie at these whole steps of it.
     fn with_missing(steps: &[usize], span: f64, filling: Filling) -> Self {
         let last = steps[steps.len() - 1];
         let distance = span / last as f64;
@@ -122,20 +123,20 @@ impl SliceGrid {
     }
 }
 
-/// A length in words, however long.
+/// Formats a length for the user, however large.
 fn length(length_mm: f64) -> String {
     let is_usual = (1e-3..1e6).contains(&length_mm);
     if is_usual { format!("{length_mm:.4} mm") } else { format!("{length_mm:e} mm") }
 }
 
-/// The steps from the first slice to each, where all lie on an even grid of about this distance.
+/// Returns the step index of each slice, if all lie on an even grid of about this spacing.
 fn whole_steps(places: &[f64], distance: f64, most: usize) -> Option<Vec<usize>> {
     let first = places[0];
     let span = places[places.len() - 1] - first;
     if !(distance > 0.0 && span.is_finite() && span / distance < most as f64) {
         return None;
     }
-    // Step by step, so that an error of the distance does not add up.
+    // Step by step, so that an error of the spacing does not accumulate.
     let mut steps = vec![0];
     for two in places.windows(2) {
         let step = ((two[1] - two[0]) / distance).round();
@@ -152,8 +153,8 @@ fn whole_steps(places: &[f64], distance: f64, most: usize) -> Option<Vec<usize>>
     (last < most && places.iter().zip(&steps).all(is_near)).then_some(steps)
 }
 
-/// Whether each distance is one across which values are interpolated: no longer than usual ones by much, or by much
-/// longer than those beside it.
+/// Returns for each gap if values are interpolated across it: unless it is much longer than the usual spacing and
+/// than both adjacent gaps.
 fn bridged(distances: &[f64], usual: f64, filling: Filling) -> Vec<bool> {
     if filling != Filling::Means {
         return vec![true; distances.len()];
@@ -168,11 +169,11 @@ fn bridged(distances: &[f64], usual: f64, filling: Filling) -> Vec<bool> {
     (0..distances.len()).map(is_bridged).collect()
 }
 
-/// The layer at a place between the first and the last slice.
+/// Returns the layer at a position between the first and the last slice.
 fn at_place(places: &[f64], place: f64, distance: f64, is_bridged: &[bool]) -> Layer {
     let above = places.partition_point(|slice| *slice < place).clamp(1, places.len() - 1);
     let [low, high] = [places[above - 1], places[above]];
-    // As good as at a slice: that is sharper than a mean.
+    // A slice close enough is used as it is, which is sharper than a blend.
     if place - low <= EVEN * distance {
         return Layer::Picture(above - 1);
     } else if high - place <= EVEN * distance {
@@ -210,7 +211,7 @@ mod tests {
         let expected = [picture(0), picture(1), picture(2), between(2, 0.5, true), picture(3), picture(4)];
         assert_eq!((found.layers, found.distance), (expected.to_vec(), 2.0));
         assert!(found.remark.unwrap().starts_with("1 slice is missing of 6, 2.0000 mm apart: interpolated"));
-        // Of three slices the shorter distance counts.
+        // Of three slices the shorter distance is the spacing.
         assert_eq!(
             grid(&[0.0, 4.0, 6.0]).layers,
             [picture(0), between(0, 0.5, true), picture(1), picture(2)]
@@ -228,7 +229,7 @@ mod tests {
             assert_eq!(*layer == Layer::Empty, (5..12).contains(&at), "{at}");
         }
         assert!(found.remark.unwrap().contains("9 slices are missing of 20"));
-        // Where all slices of a part lie far apart, there is no gap.
+        // If all slices of a region lie far apart, there is no gap.
         let thick = grid(&[0.0, 1.0, 2.0, 3.0, 4.0, 10.0, 16.0, 22.0]);
         assert!(!thick.layers.contains(&Layer::Empty), "{:?}", thick.layers);
         assert_eq!(thick.layers.len(), 23);

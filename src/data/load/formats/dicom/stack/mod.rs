@@ -1,7 +1,7 @@
-//! Pictures in the order in which they lie, and where they lie.
+//! Stacks of slices: order and placement of the images of a series.
 //!
-//! The order is that of their positions across the pictures, never that of their numbers, unless nothing else is said.
-//! Several that lie at each place are phases, of which each is a volume.
+//! Slices are ordered by their positions along the normal, never by their numbers, unless no position is stated.
+//! Several images at each position are phases, each of which is a volume.
 
 mod grid;
 mod phases;
@@ -24,42 +24,43 @@ use segments::of_segments;
 use super::header::plane::Plane;
 use super::header::taken::Attribute;
 
-/// A volume: its slices, and the layers of an even grid that are made of them.
+/// Volume of a series: its slices, and the layers of a regular grid made from them.
 #[derive(Debug)]
 pub(crate) struct StackedVolume {
-    /// What sets it apart from others of the same series; empty where there are none.
+    /// Name that distinguishes the volume from others of the series; empty if it is the only one.
     pub(crate) name: String,
     pub(crate) slices: Vec<Slice>,
     pub(crate) layers: Vec<Layer>,
     pub(crate) placement: Placement,
 }
 
-/// The volumes of a series: one, or one for each phase.
+/// Volumes of a series: one, or one per phase.
 #[derive(Debug)]
 pub(crate) struct Stack {
-    /// At least one.
+    /// Volumes, at least one of them.
     pub(crate) volumes: Vec<StackedVolume>,
-    /// What users should know of all of them.
+    /// Remarks for the user that apply to all volumes.
     pub(crate) remarks: Vec<String>,
-    /// Slices lie at places of their own: it is no film.
+    /// True if slices have distinct positions, so that they are no image sequence.
     pub(crate) has_depth: bool,
 }
 
-/// What says where pictures lie along the line across them.
+/// Source of the images' positions along their common line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Line {
-    /// Positions, across the pictures.
+    /// Image positions, projected to the normal.
     Positions,
-    /// Positions, along the axis along which they differ most: which way pictures lie is not said.
+    /// Image positions, along the axis in which they differ most, if no orientation is stated.
     Axis,
-    /// Slice Location.
+    /// Slice Location, which has no known direction.
     Locations,
 }
 
 impl Stack {
-    /// Puts pictures that lie in parallel in order. There is at least one.
+    /// Orders parallel images, at least one, and splits them into volumes.
     ///
-    /// `has_masks` says that they are masks of segments; `image_types` are the texts that [`Attribute::ImageType`] counts.
+    /// `has_masks` tells that they are masks of segments; `image_types` holds the texts that [`Attribute::ImageType`]
+    /// indexes.
     pub(crate) fn new(
         mut slices: Vec<Slice>,
         filling: Filling,
@@ -93,7 +94,7 @@ impl Stack {
 }
 
 impl Line {
-    /// Where pictures lie, millimetres; `None` where it is not said of all of them.
+    /// Returns the positions of the images in millimetres; `None` if any of them lacks one.
     fn places_mm(self, slices: &[Slice]) -> Option<Vec<f64>> {
         let first = slices.first()?.plane;
         let direction = match self {
@@ -110,7 +111,7 @@ impl Line {
         slices.iter().map(|slice| place(slice).filter(is_finite)).collect()
     }
 
-    /// The volume of a phase's pictures.
+    /// Builds the volume of a phase's images.
     fn volume(self, slices: &[Slice], poses: &[Pose], phase: Phase, filling: Filling) -> StackedVolume {
         let Phase { name, pictures } = phase;
         let places_mm: Vec<f64> = pictures.iter().map(|&picture| poses[picture].place_mm).collect();
@@ -137,7 +138,7 @@ impl Line {
     }
 }
 
-/// Leaves out the few pictures that do not say where they lie, where most do.
+/// Drops the few images without a position, if most have one.
 fn drop_unplaced(slices: &mut Vec<Slice>, remarks: &mut Vec<String>) {
     let total = slices.len();
     let placed = slices.iter().filter(|slice| slice.plane.position.is_some()).count();
@@ -148,7 +149,7 @@ fn drop_unplaced(slices: &mut Vec<Slice>, remarks: &mut Vec<String>) {
     }
 }
 
-/// The axis of space along which positions differ most.
+/// Returns the coordinate axis along which positions differ most.
 fn longest_axis(slices: &[Slice]) -> Option<DVec3> {
     let positions = slices.iter().filter_map(|slice| slice.plane.position);
     let first = slices.first()?.plane.position?;
@@ -158,7 +159,7 @@ fn longest_axis(slices: &[Slice]) -> Option<DVec3> {
     axes.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, axis)| axis)
 }
 
-/// Slices so far apart, with the pixels that a picture has.
+/// Returns the placement of slices with this spacing, and the pixel spacing of an image.
 fn spaced(plane: &Plane, distance_mm: f64) -> Placement {
     match plane.spacing {
         Some([between_rows, between_columns]) => {
@@ -168,13 +169,13 @@ fn spaced(plane: &Plane, distance_mm: f64) -> Placement {
     }
 }
 
-/// Every picture is a layer.
+/// Builds a volume in which every image is a layer.
 fn as_layers(slices: Vec<Slice>, placement: Placement) -> StackedVolume {
     let layers = (0..slices.len()).map(Layer::Picture).collect();
     StackedVolume { name: String::new(), slices, layers, placement }
 }
 
-/// Pictures that lie all at one place, taken one after the other.
+/// Builds a volume of images at one position, in order of time.
 fn film(mut slices: Vec<Slice>) -> StackedVolume {
     slices.sort_by(|a, b| by_time(&a.plane.taken, &b.plane.taken));
     let remark = format!(
@@ -184,7 +185,7 @@ fn film(mut slices: Vec<Slice>) -> StackedVolume {
     as_layers(slices, Placement::unknown().remarked(Some(remark)))
 }
 
-/// Pictures of which it is not said where each lies: in the order of their numbers, or else of their files' names.
+/// Builds a volume of images without distinct positions, in order of their numbers, or else of their file names.
 fn unplaced(mut slices: Vec<Slice>) -> StackedVolume {
     let order = |slice: &Slice| {
         [Attribute::Acquisition, Attribute::Instance, Attribute::AcquisitionTime]
@@ -195,7 +196,7 @@ fn unplaced(mut slices: Vec<Slice>) -> StackedVolume {
         both.map(|(a, b)| a.total_cmp(&b)).fold(std::cmp::Ordering::Equal, std::cmp::Ordering::then)
     });
     let plane = slices.first().map(|slice| slice.plane).unwrap_or_default();
-    // Frames that follow each other in time do not lie above each other.
+    // Frames that follow each other in time have no spatial distance.
     let count = slices.len();
     let depth = match count {
         1 => thickness(&plane),
@@ -206,7 +207,7 @@ fn unplaced(mut slices: Vec<Slice>) -> StackedVolume {
         let how = "the file does not say how its";
         let remark =
             (count > 1).then(|| format!("{how} {count} pictures lie: they are stacked in their order"));
-        // How pixels compare is known.
+        // The aspect ratio of pixels is known.
         let [between_rows, between_columns] = plane.spacing.unwrap_or([1.0; 2]);
         let placement = match plane.spacing {
             Some(_) => Placement::spaced([between_columns, between_rows, between_rows]).of_unknown_scale(),
@@ -216,7 +217,7 @@ fn unplaced(mut slices: Vec<Slice>) -> StackedVolume {
     };
     let placement = match plane.normal() {
         Some(normal) if plane.position.is_some() && plane.spacing.is_some() => {
-            // Some say the direction by the sign.
+            // Some programs encode the direction in the sign.
             let sign = plane.between.map_or(1.0, f64::signum);
             placed(&plane, Some(normal * depth.depth_mm * sign))
         }

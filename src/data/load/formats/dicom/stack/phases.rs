@@ -1,5 +1,5 @@
-//! Which pictures of one series are a volume, where several lie at the same places or nearly so: phases, echoes,
-//! acquisitions. No slice of one comes among those of another.
+//! Phases: splits images of one series at equal or nearly equal positions into volumes (phases, echoes,
+//! acquisitions), none of which gets slices of another.
 
 use std::collections::BTreeMap;
 
@@ -7,37 +7,37 @@ use super::places::{Places, Pose, collisions, usual_distance};
 use super::ranks::{by_rank, by_turn};
 use crate::data::load::formats::dicom::header::taken::{Attribute, Taken};
 
-/// Slices of two phases that are nearer to each other than this share of the distance within a phase lie at nearly the
-/// same place. Halves are those of phases that were taken in turns, and are one volume.
+/// Fraction of the spacing within a phase below which slices of two phases count as nearly coincident. Interleaved
+/// passes, half a spacing apart, form one volume.
 const NEAR: f64 = 0.45;
 
-/// Phases with less than this share of the slices of the largest stand behind the others.
+/// Fraction of the largest phase's slices below which a phase is listed behind the others.
 const WHOLE: f64 = 0.5;
 
-/// Pictures of one volume, by their numbers, in the order of their places.
+/// Images of one volume, by index, in order of position.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Phase {
-    /// What sets it apart from others; empty where there are none.
+    /// Name that distinguishes the phase from others; empty if it is the only one.
     pub(crate) name: String,
     pub(crate) pictures: Vec<usize>,
 }
 
-/// Pictures that are told apart, and what was left out.
+/// Phases of a series, with a remark on omitted images.
 #[derive(Debug)]
 pub(crate) struct Phases {
     pub(crate) phases: Vec<Phase>,
     pub(crate) remark: Option<String>,
 }
 
-/// Some of the pictures, and the attributes that all of them share and others have not.
+/// Subset of the images, with the attribute values that they have in common and others have not.
 struct Class {
     shared: Vec<(Attribute, Option<f64>)>,
-    /// In the order of their places.
+    /// Indices of the images, in order of position.
     pictures: Vec<usize>,
 }
 
 impl Phases {
-    /// Tells pictures apart. `image_types` are the texts that [`Attribute::ImageType`] counts.
+    /// Splits images into phases. `image_types` holds the texts that [`Attribute::ImageType`] indexes.
     pub(crate) fn new(poses: &[Pose], image_types: &[String]) -> Self {
         let mut order: Vec<usize> = (0..poses.len()).collect();
         order.sort_by(|&a, &b| poses[a].place_mm.total_cmp(&poses[b].place_mm));
@@ -81,7 +81,8 @@ impl Phases {
 }
 
 impl Class {
-    /// Its pictures by the values of an attribute, where that tells apart what lies at the same places; else all.
+    /// Splits the class by the values of an attribute, if that separates coincident images; otherwise returns it
+    /// unchanged.
     fn divided(self, attribute: Attribute, poses: &[Pose], tolerance_mm: f64) -> Vec<Self> {
         let mut parts: BTreeMap<Option<u64>, Vec<usize>> = BTreeMap::new();
         for &picture in &self.pictures {
@@ -99,14 +100,14 @@ impl Class {
         parts.into_values().map(part).collect()
     }
 
-    /// Whether these parts overlap, and pictures that are at the same places or nearly so are in different ones.
+    /// Returns true if the parts overlap in space, and coincident images are in different parts.
     fn is_told_apart(
         &self,
         parts: &BTreeMap<Option<u64>, Vec<usize>>,
         poses: &[Pose],
         tolerance_mm: f64,
     ) -> bool {
-        // Attributes that are another for each picture tell nothing: a part has some slices.
+        // Attributes that differ for each image do not separate phases: a part has several slices.
         const FEWEST_ON_AVERAGE: usize = 3;
         let (total, count) = (self.pictures.len(), parts.len());
         let places = Places::new(poses, &self.pictures, tolerance_mm).len();
@@ -117,19 +118,19 @@ impl Class {
         let near = NEAR * usual;
         let together = collisions(&self.pictures, poses, near);
         let apart: usize = parts.values().map(|part| collisions(part, poses, near)).sum();
-        // Where one begins as the other ends, a few are near each other: they are one volume.
+        // Parts that merely adjoin have a few coincident images: they are one volume.
         let largest = parts.values().map(Vec::len).max().unwrap_or(0);
         together > apart && 4 * (together - apart) > total - largest
     }
 }
 
-/// The bits of a number, so that they are in its order.
+/// Maps a float to bits that sort in the same order.
 fn ordered_bits(value: f64) -> u64 {
     let bits = value.to_bits();
     if bits >> 63 == 1 { !bits } else { bits | 1 << 63 }
 }
 
-/// The first attribute in which a picture differs from another, in words.
+/// Formats the first attribute in which an image differs from another.
 fn set_apart(taken: &Taken, other: &Taken, image_types: &[String]) -> String {
     let named = Attribute::ALL.into_iter().filter(|&attribute| attribute != Attribute::Instance);
     let mut different = named.filter(|&attribute| taken.get(attribute) != other.get(attribute));

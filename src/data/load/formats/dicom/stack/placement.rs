@@ -1,4 +1,4 @@
-//! Where slices lie that are in order.
+//! Placement of ordered slices in the world, with remarks on spacing and tilt.
 
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -6,14 +6,14 @@ use crate::data::load::formats::dicom::header::plane::Plane;
 use crate::data::load::formats::dicom::layer::Slice;
 use crate::data::load::reading::placement::Placement;
 
-/// How far aside of a line slices may lie, as a share of the distance between two, before users are told.
+/// Maximum sideways offset of slices from a line, as a share of their spacing, without a remark.
 const ASIDE: f64 = 0.05;
 
-/// Slices that lie aslant above each other further aside than this share of their distance are a tilted scanner's.
+/// Sideways offset per slice, as a share of the spacing, above which the gantry was tilted.
 const ASLANT: f64 = 0.05;
 
-/// Where the layers of a grid lie whose slices have positions, the lowest first: `layers` of them, and where they are a
-/// single one as thick as the header says.
+/// Returns the placement of `layers` layers whose slices have positions, lowest first; a single layer is as thick as
+/// the header says.
 pub(crate) fn of_positions(slices: &[Slice], layers: usize) -> Placement {
     let [Some(first), Some(last)] = [slices.first(), slices.last()] else { return Placement::unknown() };
     let ([Some(origin), Some(end)], Some(normal)) =
@@ -40,7 +40,7 @@ pub(crate) fn of_positions(slices: &[Slice], layers: usize) -> Placement {
     Placement { remarks: [placement.remarks.clone(), remarks].concat(), ..placement }
 }
 
-/// What users should know of where the distances between pixels are from.
+/// Returns a remark for the user on the source of the pixel spacing.
 pub(crate) fn spacing_remark(plane: &Plane) -> Option<String> {
     match (plane.spacing, plane.spacing_source) {
         (None, _) => Some("the file does not say how far its pixels lie apart".to_owned()),
@@ -49,14 +49,14 @@ pub(crate) fn spacing_remark(plane: &Plane) -> Option<String> {
     }
 }
 
-/// Where slices lie of which the lowest lies so, and each other higher by so much.
+/// Returns the placement of slices, given the plane of the lowest and the step from each to the next.
 pub(crate) fn placed(lowest: &Plane, across: Option<DVec3>) -> Placement {
     let (Some(origin), Some([along_row, along_column]), Some([between_rows, between_columns]), Some(across)) =
         (lowest.position, lowest.orientation, lowest.spacing, across)
     else {
         return Placement::unknown();
     };
-    // Pictures are not mirrored by a sign that cannot be.
+    // An invalid negative spacing does not mirror the images.
     let remark = (between_rows < 0.0 || between_columns < 0.0).then(|| {
         format!("distances of {between_columns} x {between_rows} mm between pixels cannot be: they are taken without signs")
     });
@@ -65,13 +65,13 @@ pub(crate) fn placed(lowest: &Plane, across: Option<DVec3>) -> Placement {
     Placement::lps(DAffine3 { matrix3: axes, translation: origin }).remarked(remark)
 }
 
-/// How far slices lie apart, and where that is from.
+/// Spacing of slices in millimetres, and a remark on its source.
 pub(crate) struct Depth {
     pub(crate) depth_mm: f64,
     pub(crate) remark: Option<String>,
 }
 
-/// How thick a single slice is.
+/// Returns the thickness of a single slice, or else the pixel spacing in its place.
 pub(crate) fn thickness(plane: &Plane) -> Option<Depth> {
     if let Some(Depth { depth_mm, .. }) = distance(plane) {
         return Some(Depth { depth_mm, remark: None });
@@ -81,7 +81,7 @@ pub(crate) fn thickness(plane: &Plane) -> Option<Depth> {
     Some(Depth { depth_mm: between_rows, remark: Some(remark.to_owned()) })
 }
 
-/// How far slices lie apart whose positions do not tell: what is said of it, or else of their thickness.
+/// Returns the spacing of slices without distinct positions: as stated, or else their thickness.
 pub(crate) fn distance(plane: &Plane) -> Option<Depth> {
     let is_usable = |depth: &f64| *depth != 0.0;
     let of = |depth: Option<f64>, element: &str| {
@@ -92,7 +92,7 @@ pub(crate) fn distance(plane: &Plane) -> Option<Depth> {
     of(plane.between, "Spacing Between Slices").or_else(|| of(plane.thickness, "Slice Thickness"))
 }
 
-/// Says where slices are pushed aside.
+/// Returns a remark on slices that are shifted sideways or tilted.
 fn sideways_remark(slices: &[Slice], origin: DVec3, across: DVec3, normal: DVec3) -> Option<String> {
     let distance = across.length();
     let aside = across - normal * across.dot(normal);

@@ -1,28 +1,28 @@
-//! Places along a line at which pictures lie, some of them at the same place.
+//! Positions of images along a line, several of which may coincide.
 
 use crate::data::load::formats::dicom::header::taken::Taken;
 
-/// Positions that differ by less are the same in any case, millimetres: files have six digits.
+/// Distance in millimetres below which positions always coincide: files store six digits.
 const SAME_PLACE_MM: f64 = 1e-6;
 
-/// Pictures of one place lie nearer to each other than this share of the distance to the next place.
+/// Maximum extent of coincident images, as a share of the distance to the next position.
 const NARROW: f64 = 0.1;
 
-/// A picture: where it lies along the line across it, and how it was taken.
+/// Position of an image along the line across it, and its acquisition attributes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pose {
-    /// Millimetres.
+    /// Position along the line, in millimetres.
     pub(crate) place_mm: f64,
     pub(crate) taken: Taken,
 }
 
-/// Pictures by their places, each with at least one.
+/// Indices of images grouped by position; no group is empty.
 #[derive(Debug)]
 pub(crate) struct Places(pub(crate) Vec<Vec<usize>>);
 
 impl Places {
-    /// Gathers pictures, which are in the order of their places: those that are nearer to the one before them than a
-    /// tolerance lie where that does.
+    /// Groups images, given in order of position: each that is nearer to its predecessor than the tolerance joins its
+    /// group.
     pub(crate) fn new(poses: &[Pose], pictures: &[usize], tolerance_mm: f64) -> Self {
         let mut places: Vec<Vec<usize>> = Vec::new();
         let mut last = f64::NEG_INFINITY;
@@ -40,33 +40,33 @@ impl Places {
         Self(places)
     }
 
-    /// How many places there are.
+    /// Returns the number of distinct positions.
     pub(crate) fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// Most pictures of one place.
+    /// Returns the maximum number of images at one position.
     pub(crate) fn most_at_one(&self) -> usize {
         self.0.iter().map(Vec::len).max().unwrap_or(0)
     }
 
-    /// The first picture of each place.
+    /// Returns the first image of each position.
     pub(crate) fn firsts(&self) -> Vec<usize> {
         self.0.iter().filter_map(|place| place.first().copied()).collect()
     }
 
-    /// How near pictures lie that lie at one place, millimetres: below the distance at which the distances between
-    /// neighbours fall into small ones and others that are ten times as long at least.
+    /// Returns the tolerance within which positions coincide, in millimetres: the distances between neighbours above
+    /// it are at least ten times those below.
     pub(crate) fn tolerance_mm(poses: &[Pose], order: &[usize]) -> f64 {
         let place = |picture: &usize| poses[*picture].place_mm;
         let distances: Vec<f64> = order.windows(2).map(|two| place(&two[1]) - place(&two[0])).collect();
         let mut sorted = distances.clone();
         sorted.sort_by(f64::total_cmp);
-        // From long ones to short ones: the first that leaves narrow places.
+        // From long to short distances: the first split that leaves narrow groups.
         for (at, two) in sorted.windows(2).enumerate().rev() {
             let longer = sorted.len() - 1 - at;
             let is_jump = two[0] < NARROW * two[1];
-            // One long distance alone is a gap.
+            // A single long distance is a gap.
             if !is_jump || longer < 2 && two[0] > SAME_PLACE_MM {
                 continue;
             }
@@ -78,19 +78,19 @@ impl Places {
                 return two[0].max(SAME_PLACE_MM);
             }
         }
-        // All at one place, or none at that of another.
+        // All images coincide, or no two of them do.
         SAME_PLACE_MM
     }
 }
 
-/// How many neighbours are nearer to each other than a distance, among pictures in the order of their places.
+/// Counts neighbouring images that are nearer to each other than `near_mm`, in order of position.
 pub(crate) fn collisions(pictures: &[usize], poses: &[Pose], near_mm: f64) -> usize {
     let distance = |two: &[usize]| poses[two[1]].place_mm - poses[two[0]].place_mm;
     pictures.windows(2).filter(|two| distance(two) < near_mm).count()
 }
 
-/// The median distance between the places of pictures within parts, each in the order of their places; `None` where no
-/// part has two places.
+/// Returns the median distance between positions within the parts, each in order of position; `None` if no part has
+/// two positions.
 pub(crate) fn usual_distance<'a>(
     parts: impl Iterator<Item = &'a Vec<usize>>,
     poses: &[Pose],
@@ -119,10 +119,10 @@ mod tests {
     fn the_usual_distance_says_what_lies_at_one_place() {
         assert_eq!(places(&[0.0, 2.0, 4.0, 6.0]), [1; 4]);
         assert_eq!(places(&[0.0, 0.0, 2.0, 2.0, 4.0]), [2, 2, 1]);
-        // Positions of a hundred phases tremble.
+        // Positions of a hundred phases, with jitter.
         let many: Vec<f64> = (0..400).map(|n| f64::from(n / 100) * 2.0 + f64::from(n % 100) * 1e-3).collect();
         assert_eq!(places(&many), [100; 4]);
-        // Thin slices, thick ones, and a gap.
+        // Thin slices, thick slices, and a gap.
         assert_eq!(places(&[0.0, 0.6, 1.2, 1.8, 6.8, 11.8, 111.8]), [1; 7]);
         assert_eq!(places(&[5.0; 4]), [4]);
         assert_eq!(places(&[0.0, 1.0, 100.0]), [1; 3]);

@@ -1,12 +1,12 @@
-//! Pictures of the same places that no attribute tells apart for all of them: by their order at each place, or in the
-//! order in which they were taken.
+//! Phases of coincident images that no single attribute separates: by rank at each position, or by order of
+//! acquisition.
 
 use std::cmp::Ordering;
 
 use super::places::{Places, Pose};
 use crate::data::load::formats::dicom::header::taken::{Attribute, Taken};
 
-/// Which of two pictures of one place comes first: the first attribute in which they differ decides.
+/// Compares two coincident images: the first attribute in which they differ decides.
 pub(crate) fn by_time(a: &Taken, b: &Taken) -> Ordering {
     let compared = Attribute::ALL.into_iter().map(|attribute| {
         let [a, b] = [a, b].map(|taken| taken.get(attribute).unwrap_or(0.0));
@@ -15,8 +15,8 @@ pub(crate) fn by_time(a: &Taken, b: &Taken) -> Ordering {
     compared.into_iter().find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
 }
 
-/// The first picture of each place, the second, and so on. Where some places have fewer pictures, those are of the
-/// nearest times; `None` where there are no times that say that.
+/// Assigns images to phases by rank: the first of each position, the second, and so on. Positions with fewer images
+/// assign theirs to the phases of the nearest times; `None` if there are no suitable times.
 pub(crate) fn by_rank(places: &Places, poses: &[Pose]) -> Option<Vec<Vec<usize>>> {
     let mut sorted = places.0.clone();
     for place in &mut sorted {
@@ -31,7 +31,7 @@ pub(crate) fn by_rank(places: &Places, poses: &[Pose]) -> Option<Vec<Vec<usize>>
         .find_map(|attribute| by_nearest_time(&sorted, count, poses, attribute))
 }
 
-/// As [`by_rank`], by a time that begins anew at each place.
+/// Assigns images to phases by a time that restarts at each position, where positions may lack images.
 fn by_nearest_time(
     places: &[Vec<usize>],
     count: usize,
@@ -61,7 +61,7 @@ fn by_nearest_time(
     for place in &places {
         let mut least = 0;
         for (at, &(time, picture)) in place.iter().enumerate() {
-            // Those behind it need ranks, too.
+            // Leaves enough ranks for the remaining images.
             let most = count - (place.len() - at);
             let distance = |rank: &usize| (usual[*rank] - time).abs();
             let rank = (least..=most).min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
@@ -72,8 +72,8 @@ fn by_nearest_time(
     is_rising.then_some(ranks)
 }
 
-/// Pictures in the order of their instance numbers, a new volume where a place comes again; `None` where that makes
-/// more volumes than pictures of one place, or pieces of them.
+/// Assigns images to phases in order of their instance numbers, with a new phase whenever a position recurs; `None`
+/// if that makes more phases than the maximum number of coincident images, or fragments of phases.
 pub(crate) fn by_turn(places: &Places, poses: &[Pose]) -> Option<Vec<Vec<usize>>> {
     let mut pictures = Vec::new();
     for (place, at_place) in places.0.iter().enumerate() {

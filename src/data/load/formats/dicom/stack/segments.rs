@@ -1,4 +1,4 @@
-//! The frames of segments: which of them lie at one place, and where the others are that have no segment in them.
+//! Stack of segmentation frames: groups masks by position, and restores the empty slices that files omit.
 
 use std::ops::Range;
 
@@ -9,7 +9,7 @@ use super::places::{Places, Pose};
 use crate::data::load::formats::dicom::layer::{Filling, Layer, Slice};
 use crate::data::load::reading::placement::Placement;
 
-/// The volume of masks, each of a segment at a place; without places every mask is a layer.
+/// Builds the volume of masks, each of one segment at one position; without positions every mask is a layer.
 pub(super) fn of_segments(slices: Vec<Slice>) -> StackedVolume {
     let name = String::new();
     let normal = slices.first().and_then(|slice| slice.plane.normal());

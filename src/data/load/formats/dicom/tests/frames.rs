@@ -1,14 +1,14 @@
-//! Files of many frames.
+//! Tests of files with several frames.
 
 use super::*;
 
-/// Frames of 1 x 1 pixels with these values.
+/// A file with frames of 1 x 1 pixels of these values.
 fn film(values: &[u16]) -> File {
     let count = values.len().to_string();
     File::new(EXPLICIT).size(1, 1).frames(&count).words(values)
 }
 
-/// What an enhanced file says of all its frames, and of each: a height, a time and a slope.
+/// An enhanced file with shared and per-frame functional groups: position, time and slope.
 fn enhanced(syntax: &'static str, values: &[u16], frames: &[(&str, u32, &str)], is_marked: bool) -> File {
     let one = |tag: Tag, set: Set| Set::default().items(tag, vec![set], is_marked);
     let join = |sets: Vec<Set>| Set(sets.into_iter().flat_map(|set| set.0).collect());
@@ -43,7 +43,7 @@ fn enhanced(syntax: &'static str, values: &[u16], frames: &[(&str, u32, &str)], 
 
 #[test]
 fn frames_are_put_in_order_by_what_is_said_of_each() {
-    // Sagittal: across is −x, so that slices go from right to left.
+    // Sagittal: the normal is −x, so slices go from right to left.
     let frames = [("5", 2, "1"), ("1", 1, "1"), ("5", 1, "1"), ("1", 2, "1"), ("3", 1, "1"), ("3", 2, "1")];
     for syntax in [EXPLICIT, IMPLICIT, DEFLATED] {
         for is_marked in [false, true] {

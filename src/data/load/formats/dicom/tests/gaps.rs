@@ -1,9 +1,9 @@
-//! Slices that are missing, or lie unevenly: each is at its own place.
+//! Tests of missing and unevenly spaced slices: each keeps its position.
 
 use super::*;
 use crate::data::VoxelType;
 
-/// A series of slices of 4 x 3 pixels v = x + 10 y + 100 n at n times a distance.
+/// A series of slices of 4 x 3 pixels v = x + 10 y + 100 n, at n times a distance.
 fn series(at: &[u16], distance_mm: f64) -> Vec<File> {
     let slice = |&n: &u16| {
         let position = format!("0\\0\\{}", f64::from(n) * distance_mm);
@@ -72,7 +72,7 @@ fn what_was_not_measured_is_not_mixed() {
     let files = series(&[0, 1, 3, 4], 1.0);
     let files: Vec<File> = files.into_iter().map(|file| file.short(tags::PADDING, 100)).collect();
     let volume = load_path(folder(&files).path(), Choice::default()).unwrap();
-    // The first pixel of the slice at 1 is padding: beside it, too.
+    // The first pixel of the slice at 1 is padding, and so is the interpolated one beside it.
     assert_eq!(volume.samples().value(24), 100.0);
     assert_eq!(volume.samples().value(25), 201.0);
 }
@@ -94,7 +94,7 @@ fn uneven_slices_are_interpolated_to_their_places() {
     assert_eq!(volume.dims()[2], 8);
     for z in 0..8 {
         let (found, right) = (volume.samples().value(z), z as f64 * distance * 10.0);
-        // Up to what counts as even: a twentieth of a distance.
+        // Up to the tolerance of an even grid: a twentieth of the spacing.
         assert!((found - right).abs() <= 0.051 * distance * 10.0, "{z}: {found}, {right} expected");
     }
     assert_remark(&volume, "1.0000 mm to 1.6000 mm apart: they are interpolated to layers 1.0000 mm apart");
@@ -142,7 +142,7 @@ fn slices_without_positions_among_others_are_left_out() {
     assert_remark(&volume, "1 of 4 pictures do not say where they lie");
 }
 
-/// Of a part of a volume, layers are those of the whole.
+/// Layers of a part of a volume are those of the whole.
 #[test]
 fn parts_of_a_volume_with_gaps_are_parts_of_it() {
     let at = folder(&series(&[0, 1, 2, 4, 5], 2.0));

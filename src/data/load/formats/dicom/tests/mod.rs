@@ -1,4 +1,4 @@
-//! DICOM files from the outside: what is read and what is refused.
+//! Tests of DICOM files, end to end: accepted and refused files.
 
 mod codecs;
 mod frames;
@@ -33,18 +33,18 @@ const DEFLATED: &str = "1.2.840.10008.1.2.1.99";
 const BIG: &str = "1.2.840.10008.1.2.2";
 const RLE: &str = "1.2.840.10008.1.2.5";
 
-/// What an element holds.
+/// Content of a data element, for encoding.
 #[derive(Debug, Clone)]
 enum Content {
-    /// Its representation, and its bytes.
+    /// Value with its representation (VR), encoded.
     Value([u8; 2], Vec<u8>),
-    /// Items, whose lengths are said or marked.
+    /// Items of a sequence; `true` for undefined lengths with delimiters.
     Items(Vec<Set>, bool),
-    /// Compressed pixels.
+    /// Fragments of compressed pixels, in order.
     Fragments(Vec<Vec<u8>>),
 }
 
-/// A data set.
+/// Builder of a data set.
 #[derive(Debug, Clone, Default)]
 struct Set(BTreeMap<Tag, Content>);
 
@@ -117,7 +117,7 @@ impl Set {
     }
 }
 
-/// A file.
+/// Builder of a DICOM file.
 #[derive(Debug, Clone)]
 struct File {
     syntax: &'static str,
@@ -125,7 +125,7 @@ struct File {
 }
 
 impl File {
-    /// A picture of 3 x 2 pixels of 16 bits in a place, 10 … 60.
+    /// A file of 3 x 2 pixels of 16 bits, 10 … 60, with a position.
     fn new(syntax: &'static str) -> Self {
         let set = Set::default()
             .text(tags::SOP_CLASS, *b"UI", "1.2.840.10008.5.1.4.1.1.2")
@@ -220,18 +220,18 @@ impl File {
     }
 }
 
-/// A picture of 4 x 3 pixels v = x + 10 y + `base` in a place.
+/// A file of 4 x 3 pixels v = x + 10 y + `base`, with a position.
 fn numbered(base: u16) -> File {
     File::new(EXPLICIT).size(4, 3).words(&numbered_values(&[base]))
 }
 
-/// The pixels of pictures as [`numbered`] makes them.
+/// Returns the pixels of images as [`numbered`] makes them.
 fn numbered_values(bases: &[u16]) -> Vec<u16> {
     let pixels = |&base: &u16| (0..12).map(move |at| at % 4 + at / 4 * 10 + base);
     bases.iter().flat_map(pixels).collect()
 }
 
-/// A folder with these files, each called by its number.
+/// Makes a folder with these files, each named by its index.
 fn folder(files: &[File]) -> TempDir {
     let folder = TempDir::new().unwrap();
     for (number, file) in files.iter().enumerate() {
@@ -246,7 +246,7 @@ fn assert_remark(volume: &Volume, words: &str) {
     assert!(remarks.iter().any(|remark| remark.contains(words)), "{words:?} is not in {remarks:?}");
 }
 
-/// The axes and the origin of a volume, rounded.
+/// Returns axes and origin of a volume, rounded.
 fn place(volume: &Volume) -> [f64; 12] {
     volume.world_from_index().to_cols_array().map(|number| (number * 1e6).round() / 1e6)
 }

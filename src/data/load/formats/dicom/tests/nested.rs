@@ -1,8 +1,8 @@
-//! Folders of folders, as disks and exports of archives have them.
+//! Tests of nested folders, as disks and archive exports have them.
 
 use super::*;
 
-/// A slice at a height in a file of a folder within a folder.
+/// Writes a slice at a height to a file in a nested folder.
 fn write(at: &TempDir, name: &str, z: u16, set: impl FnOnce(Set) -> Set) {
     let path = at.path().join(name);
     std::fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -72,10 +72,10 @@ fn folders_of_other_things_change_nothing() {
     picture("within/other.png");
     let volume = load_path(at.path(), Choice::default()).unwrap();
     assert_eq!(volume.dims(), [2, 2, 3]);
-    // One DICOM file below them is none of them.
+    // A single DICOM file in a subfolder is ignored beside images.
     write(&at, "within/IM", 0, |set| set);
     assert_eq!(load_path(at.path(), Choice::default()).unwrap().dims(), [2, 2, 3]);
-    // More of them are what the folder is about.
+    // Several of them outnumber the images, and are loaded.
     for z in 0..4 {
         write(&at, &format!("scan/{z}"), z, |set| set);
     }

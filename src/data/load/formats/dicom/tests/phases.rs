@@ -1,4 +1,4 @@
-//! Several acquisitions at the same places, or nearly so: each is a volume of its own.
+//! Tests of several acquisitions at equal or nearly equal positions: each is a volume.
 
 use super::*;
 
@@ -7,7 +7,7 @@ fn slice(z_mm: f64, base: u16, set: impl FnOnce(Set) -> Set) -> File {
     numbered(base).with(|all| set(all.decimal(tags::POSITION, &format!("0\\0\\{z_mm}"))))
 }
 
-/// The volume of a phase of files.
+/// Loads the volume of one phase of the files.
 fn phase(files: &[File], frame: usize) -> Volume {
     load_path(folder(files).path(), Choice { frame: Some(frame), ..Choice::default() }).unwrap()
 }
@@ -16,7 +16,7 @@ fn acquisition(number: u16) -> impl Fn(Set) -> Set {
     move |set| set.text(tags::ACQUISITION_NUMBER, *b"IS", &number.to_string())
 }
 
-/// Acquisition 1 at the heights 0, 1 and 3 times 2 mm, acquisition 2 at all four and 1000 higher in its values.
+/// Acquisition 1 at heights 0, 1 and 3 times 2 mm; acquisition 2 at all four, with values higher by 1000.
 fn acquisitions(shift_mm: f64) -> Vec<File> {
     let first = [0u16, 1, 3].map(|z| slice(f64::from(z) * 2.0, 100 * z, acquisition(1)));
     let second =
@@ -26,7 +26,7 @@ fn acquisitions(shift_mm: f64) -> Vec<File> {
 
 #[test]
 fn a_phase_that_lacks_a_slice_borrows_none() {
-    // At the same places, with a tremor, and after a breath.
+    // At equal positions, with jitter, and after a breath.
     for shift_mm in [0.0, 0.001, 0.3, 0.8] {
         let files = acquisitions(shift_mm);
         let offered = load_path(folder(&files).path(), Choice::default());
@@ -70,7 +70,7 @@ fn every_attribute_that_varies_is_offered() {
         ),
     ];
     for (set, words) in cases {
-        // The second of each three lacks a slice, whichever it is.
+        // The second phase lacks one of three slices, whichever it is.
         for missing in [0, 1, 2] {
             let heights = [0u16, 1, 2];
             let first = heights.map(|z| slice(f64::from(z), 100 * z, |all| set(all, 1.0)));
@@ -85,7 +85,7 @@ fn every_attribute_that_varies_is_offered() {
                 1 => &[1000, 1100, 1200],
                 _ => &[1000, 1100],
             };
-            // Two slices that lie 2 mm apart are an even volume by themselves.
+            // Two slices 2 mm apart are an even volume.
             let expected = if missing == 1 { &[1000, 1200][..] } else { expected };
             assert_eq!(phase(&files, 1).samples(), &Samples::U16(numbered_values(expected)), "{words}");
         }
@@ -111,7 +111,7 @@ fn attributes_are_combined() {
 
 #[test]
 fn times_that_differ_from_slice_to_slice_are_those_of_the_nearest_phase() {
-    // Three phases of which each slice has its own times; the first time of the second slice is missing.
+    // Three phases, in which each slice has its own times; the first time of the second slice is missing.
     let times = [[0.0, 40.0, 80.0], [1.0, 41.5, 81.0], [0.5, 39.0, 79.5]];
     let mut files = Vec::new();
     for (z, times) in times.into_iter().enumerate() {
@@ -136,7 +136,7 @@ fn instance_numbers_tell_passes_apart() {
     let files = [file(0, 0, 1), file(1, 0, 2), file(2, 0, 3), file(0, 1000, 4), file(2, 1000, 5)];
     assert_eq!(phase(&files, 0).samples(), &Samples::U16(numbered_values(&[0, 100, 200])));
     assert_eq!(phase(&files, 1).samples(), &Samples::U16(numbered_values(&[1000, 1200])));
-    // Slice after slice.
+    // Slice by slice, with both passes at each position.
     let files = [file(0, 0, 1), file(0, 1000, 2), file(1, 0, 3), file(1, 1000, 4)];
     assert_eq!(phase(&files, 1).samples(), &Samples::U16(numbered_values(&[1000, 1100])));
 }

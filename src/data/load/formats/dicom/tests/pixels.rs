@@ -1,4 +1,4 @@
-//! Numbers of pixels: types, orders, bits, colours, and what they mean.
+//! Tests of pixels: types, byte orders, bits, colours, and value hints.
 
 use super::*;
 use crate::data::{Meaning, Modality};
@@ -9,7 +9,7 @@ fn every_way_of_writing_gives_the_same() {
         let volume = File::new(syntax).load().unwrap();
         assert_eq!(volume.dims(), [3, 2, 1], "{syntax}");
         assert_eq!(volume.samples(), &Samples::U16(vec![10, 20, 30, 40, 50, 60]), "{syntax}");
-        // Columns are 0.25 mm apart, rows 0.5; x and y are turned.
+        // Columns are 0.25 mm apart, rows 0.5; x and y are inverted.
         let expected = [-0.25, 0.0, 0.0, 0.0, -0.5, 0.0, 0.0, 0.0, 2.5, -1.0, -2.0, 3.0];
         assert_eq!(place(&volume), expected, "{syntax}");
         assert!(volume.is_anatomical() && volume.remarks().is_empty(), "{:?}", volume.remarks());
@@ -24,7 +24,7 @@ fn what_is_there_counts_not_what_the_file_says_of_its_writing() {
     let meta = said.len() - File::new(EXPLICIT).set.bytes(Form::EXPLICIT).len();
     std::fs::write(&path, [&said[..meta], &set.bytes(Form::IMPLICIT)].concat()).unwrap();
     assert_eq!(load_path(&path, Choice::default()).unwrap().samples().value(5), 60.0);
-    // Without mark and first group.
+    // Without magic bytes and file meta group.
     for syntax in [IMPLICIT, EXPLICIT, BIG] {
         let file = File::new(syntax);
         std::fs::write(folder.path().join("bare"), file.set.bytes(file.form())).unwrap();
@@ -52,7 +52,7 @@ fn numbers_of_every_type_are_exact() {
     assert_eq!(volume.samples(), &Samples::I16(vec![-2047, 2047]), "bits above the sign do not count");
     let volume = file(16, 12, false).short(tags::HIGH_BIT, 15).words(&[0x1235, 0xfff0]).load().unwrap();
     assert_eq!(volume.samples(), &Samples::U16(vec![0x123, 0xfff]));
-    // Bytes in words of the other order.
+    // Bytes swapped within big-endian words.
     let swapped = File::new(BIG).size(2, 2).bits(8, 8, false).pixels(&[2, 1, 4, 3]).load().unwrap();
     assert_eq!(swapped.samples(), &Samples::U8(vec![1, 2, 3, 4]));
     let floats = [0.5f32, -2.0].map(f32::to_le_bytes).concat();
@@ -111,7 +111,7 @@ fn colours_are_shown_as_luminance_or_one_by_one() {
         let volume = file("RGB", order, &bytes).load_with(choice).unwrap();
         assert_eq!(volume.samples(), &Samples::U8(vec![0, 255]));
     }
-    // Red, and grey; then two greys that share their colour.
+    // Red and grey; then two greys that share colour differences.
     let volume = file("YBR_FULL", 0, &[76, 85, 255, 90, 128, 128]).load().unwrap();
     assert_eq!(volume.samples(), &Samples::U8(vec![54, 90]));
     let volume = file("YBR_FULL_422", 0, &[70, 90, 128, 128]).load().unwrap();

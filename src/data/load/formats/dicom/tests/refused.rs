@@ -1,4 +1,4 @@
-//! Files that say what cannot be.
+//! Tests of files that must be refused: no pixels, unsupported, contradictory, truncated.
 
 use super::*;
 
@@ -72,7 +72,7 @@ fn lengths_that_lie_are_found_out_before_there_is_room_for_them() {
     let many = File::new(EXPLICIT).frames("30000");
     assert_refused(many.load(), LoadErrorKind::BadInput, &["truncated", "30000 frames"]);
     for frames in ["999999999999999999999", "-5", "nan", "x"] {
-        // Whatever it is, it is no reason to stumble.
+        // Any result is acceptable, but no panic.
         let _either = File::new(EXPLICIT).frames(frames).load();
         let _either = File::new(RLE).frames(frames).fragments(&[&[0; 4], &[0; 8]]).load();
     }
@@ -98,7 +98,7 @@ fn data_sets_that_contradict_themselves_are_refused() {
     refuse(b"\x08\0\x40\x11OB\0\0\xff\xff\xff\xff\xfe\xff\0\xe0\xff\xff\xff\xff", "no length");
     refuse(b"", "no pixels");
     refuse(b"\x08\0\x40\x11OB\0\0\xff\xff\xff\xff\xfe\xff\0\xe0\0\0\0\0", "no end");
-    // Sequences in sequences.
+    // Deeply nested sequences.
     let nest = b"\x08\0\x40\x11SQ\0\0\xff\xff\xff\xff\xfe\xff\0\xe0\xff\xff\xff\xff";
     refuse(&nest.repeat(100_000), "more than 64 sequences are nested");
     let deep = Set::default().items(0x0008_1140, vec![Set::default()], true);

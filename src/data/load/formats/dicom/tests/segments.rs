@@ -1,9 +1,9 @@
-//! Segmentations: masks of one bit, shares, and numbers.
+//! Tests of segmentations: masks of one bit, fractions, and label maps.
 
 use super::*;
 use crate::data::{Label, Meaning};
 
-/// A segment as the header describes it; colours are grey of this lightness, from 0 to 100.
+/// A segment as the header describes it, coloured grey of this lightness, from 0 to 100.
 fn segment(number: u16, label: &str, lightness: f64) -> Set {
     let grey = [(lightness / 100.0 * 65535.0) as u16, 32896, 32896];
     Set::default()
@@ -12,7 +12,7 @@ fn segment(number: u16, label: &str, lightness: f64) -> Set {
         .value(tags::SEGMENT_COLOR, *b"US", &grey.map(u16::to_le_bytes).concat())
 }
 
-/// Frames of 5 x 3 pixels, each of a segment at a height.
+/// A segmentation with frames of 5 x 3 pixels, each of a segment at a height.
 fn segmentation(kind: &str, frames: &[(u16, &str)]) -> File {
     let frame = |(number, z): &(u16, &str)| {
         let position = Set::default().decimal(tags::POSITION, &format!("0\\0\\{z}"));
@@ -40,7 +40,7 @@ fn segmentation(kind: &str, frames: &[(u16, &str)]) -> File {
     })
 }
 
-/// Frames of bits, eight in a byte, the first the lowest, without a gap between frames.
+/// Packs frames of bits, eight to a byte, lowest bit first, without a gap between frames.
 fn bits(frames: &[[u8; 15]]) -> Vec<u8> {
     let mut bytes = vec![0u8; (frames.len() * 15).div_ceil(16) * 2];
     for (at, bit) in frames.iter().flatten().enumerate() {
@@ -49,7 +49,7 @@ fn bits(frames: &[[u8; 15]]) -> Vec<u8> {
     bytes
 }
 
-/// A mask that has some of its pixels, by their numbers.
+/// Makes a mask with these pixels set.
 fn mask(pixels: &[usize]) -> [u8; 15] {
     let mut mask = [0; 15];
     for &pixel in pixels {
@@ -120,7 +120,7 @@ fn shares_of_several_segments_are_a_label_map() {
     let Samples::U8(found) = volume.samples() else { panic!() };
     assert_eq!(&found[..4], [1, 3, 3, 0], "the largest share of a half at least");
     assert_labels(&volume);
-    // Those of one are a field.
+    // Fractions of a single segment are a scalar field.
     let one = segmentation("FRACTIONAL", &[(1, "0"), (1, "4")])
         .bits(8, 8, false)
         .with(|set| set.items(tags::SEGMENTS, vec![segment(1, "Liver", 0.0)], false));
@@ -156,7 +156,7 @@ fn segmentations_that_lie_are_no_harm() {
         segmentation("BINARY", &[(1, "0"), (1, "2")]).bits(1, 1, false).pixels(&bits(&[mask(&[0]); 2]));
     let truncated = whole.clone().frames("60000");
     assert_refused(truncated.load(), LoadErrorKind::BadInput, &["truncated", "60000 frames"]);
-    // Far apart: as many layers as there is room for, and no more.
+    // Far apart: no more layers than the limit allows.
     let far =
         segmentation("BINARY", &[(1, "0"), (1, "1e12")]).bits(1, 1, false).pixels(&bits(&[mask(&[0]); 2]));
     assert_eq!(far.load().unwrap().dims()[2], 2);

@@ -1,8 +1,8 @@
-//! Folders of slices.
+//! Tests of folders with slices of one or several series.
 
 use super::*;
 
-/// A slice at a height, with a value.
+/// A slice of one pixel at a height.
 fn slice(z: &str, value: u16, number: &str) -> File {
     File::new(EXPLICIT).size(1, 1).words(&[value]).with(|set| {
         set.decimal(tags::POSITION, &format!("0\\0\\{z}")).text(tags::INSTANCE_NUMBER, *b"IS", number).text(
@@ -27,7 +27,7 @@ fn slices_are_in_the_order_in_which_they_lie() {
     assert_eq!((volume.name(), volume.dims()), ("Head", [1, 1, 3]));
     assert_eq!(place(&volume)[6..], [0.0, 0.0, 2.0, 0.0, 0.0, 0.0]);
     assert!(volume.remarks().is_empty(), "{:?}", volume.remarks());
-    // One of them stands for all.
+    // Naming one slice loads the whole series.
     let volume = load_path(&at.path().join("0"), Choice::default()).unwrap();
     assert_eq!(volume.samples(), &Samples::U16(vec![1, 2, 3]));
     assert_remark(&volume, "3 slices of its series");
@@ -108,7 +108,7 @@ fn series_of_a_folder_are_offered() {
     assert_eq!(load_path(at.path(), choice).unwrap().samples(), &Samples::U16(vec![1, 2]));
     let own = load_path(&at.path().join("1"), Choice::default()).unwrap();
     assert_eq!(own.samples(), &Samples::U16(vec![7, 8, 9]), "a file says which series is meant");
-    // Another size in the same series.
+    // An image of another size in the same series.
     let wide = slice("5", 1, "5").size(2, 1).words(&[1, 2]);
     let at = folder(&[slice("0", 1, "1"), slice("1", 2, "2"), wide]);
     assert_refused(
@@ -131,7 +131,7 @@ fn files_that_are_no_slices_do_not_disturb() {
     assert_refused(load_all(&[report]), LoadErrorKind::BadInput, &["1 DICOM files have no pixels"]);
 }
 
-/// A slice whose pixels are cut off is missing from the volume, and not in silence.
+/// A truncated slice is missing from the volume, with a remark.
 #[test]
 fn what_is_left_out_is_said() {
     let cut = slice("2", 3, "3").size(2, 2);
@@ -154,7 +154,7 @@ fn scales_of_slices_may_differ() {
     assert_eq!(volume.hints().unit(), Some("BQML"));
 }
 
-/// A picture that shows where the scan was to be is numbered before the scan.
+/// A localiser is numbered before the scan that it was made for.
 #[test]
 fn the_largest_volume_comes_first() {
     let scout = numbered(7).with(|set| {
@@ -167,7 +167,7 @@ fn the_largest_volume_comes_first() {
         let set = slice(z, 5, z).size(4, 3).words(&numbered_values(&[100]));
         set.with(|set| set.text(tags::SERIES_NUMBER, *b"IS", "2"))
     });
-    // A film of more pictures than the scan has slices.
+    // An image sequence with more images than the scan has slices.
     let film = (0..6).map(|n| {
         numbered(n).with(|set| {
             set.text(tags::SERIES, *b"UI", "9.8").text(tags::SERIES_NUMBER, *b"IS", "0").text(

@@ -1,8 +1,8 @@
-//! Pictures without positions: their order, and how far they lie apart.
+//! Tests of images without positions: their order and spacing.
 
 use super::*;
 
-/// A slice v = x + 10 y + `base` without position.
+/// A slice v = x + 10 y + `base` without position and orientation.
 fn bare(base: u16, set: impl FnOnce(Set) -> Set) -> File {
     numbered(base).with(|all| set(all.without(tags::POSITION).without(tags::ORIENTATION)))
 }
@@ -13,7 +13,7 @@ fn spacing(volume: &Volume) -> [f64; 3] {
 
 #[test]
 fn slice_locations_say_order_and_distance() {
-    // Names and instance numbers say another order.
+    // File names and instance numbers imply another order.
     let files: Vec<File> = [3u16, 0, 2, 1]
         .into_iter()
         .enumerate()
@@ -36,7 +36,7 @@ fn slice_locations_say_order_and_distance() {
         assert!(!volume.has_unknown_scale());
         assert_remark(&volume, "1.5000 mm apart, is taken from Slice Location");
     }
-    // One is missing.
+    // With one slice missing.
     let at = folder(&[files[0].clone(), files[1].clone(), files[3].clone()]);
     let volume = load_path(at.path(), Choice::default()).unwrap();
     assert_eq!(volume.samples(), &Samples::U16(numbered_values(&[0, 100, 200, 300])));
@@ -56,7 +56,7 @@ fn thickness_and_distance_come_before_the_pixels() {
     assert_remark(&volume, "3.5 mm, is taken from Spacing Between Slices");
     let volume = frames(|set| set.without(tags::SLICE_THICKNESS));
     assert_eq!((spacing(&volume), volume.has_unknown_scale()), ([0.25, 0.5, 0.5], true));
-    // Frames that follow each other in time lie nowhere.
+    // Frames that follow each other in time have no spacing.
     let increment = [0x18, 0, 0x63, 0x10];
     let film = bare(0, |set| set.value(tags::FRAME_INCREMENT, *b"AT", &increment));
     let volume = film.frames("3").words(&numbered_values(&[0, 100, 200])).load().unwrap();

@@ -1,4 +1,4 @@
-//! Slices that cannot be read among others that can, and private syntaxes that are plain.
+//! Tests of unreadable slices among readable ones, and of private syntaxes with plain pixels.
 
 use super::*;
 
@@ -10,7 +10,7 @@ fn at_height(file: File, z: u16) -> File {
     file.with(|set| set.decimal(tags::POSITION, &format!("0\\0\\{}", 2 * z)))
 }
 
-/// Four slices of which the second is another.
+/// Four slices, the second of which is replaced.
 fn around(second: File) -> [File; 4] {
     [numbered(0), second, numbered(200), numbered(300)]
 }
@@ -38,7 +38,7 @@ fn one_unreadable_slice_does_not_cost_the_series() {
         let at = series(second);
         for path in [at.path().to_owned(), at.path().join("0")] {
             let volume = load_path(&path, Choice::default()).unwrap();
-            // Where it was, values are those between its neighbours.
+            // Values at its position are interpolated from its neighbours.
             assert_eq!(volume.samples(), &Samples::U16(numbered_values(&[0, 100, 200, 300])), "{why}");
             assert_eq!(place(&volume)[8], 2.0);
             assert_remark(&volume, "1 of 4 slices is left out");
@@ -97,7 +97,7 @@ fn a_broken_frame_does_not_cost_the_others() {
 #[test]
 fn private_syntaxes_that_are_plain_are_read() {
     for form in [Form::EXPLICIT, Form::IMPLICIT] {
-        // As the file says nothing of how its data set is written.
+        // In either encoding, as the private syntax states none.
         let bytes = numbered(0).set.bytes(form);
         let meta = Set::default().text(tags::TRANSFER_SYNTAX, *b"UI", PRIVATE).bytes(Form::EXPLICIT);
         let at = TempDir::new().unwrap();
@@ -106,13 +106,13 @@ fn private_syntaxes_that_are_plain_are_read() {
         let volume = load_path(&path, Choice::default()).unwrap();
         assert_eq!(volume.samples(), &Samples::U16(numbered_values(&[0])), "{form:?}");
     }
-    // One that is packed, as a look at it shows.
+    // Compressed pixels, detected by their magic bytes.
     let mut rle = vec![0u8; 64];
     rle[..12].copy_from_slice(&[2, 0, 0, 0, 64, 0, 0, 0, 66, 0, 0, 0]);
     rle.extend([245, 0, 245, 7]);
     let packed = File { syntax: PRIVATE, ..numbered(0) }.fragments(&[&[], &rle]);
     assert_eq!(packed.load().unwrap().samples(), &Samples::U16(vec![7; 12]));
-    // One that nobody knows.
+    // Pixels in no known form.
     let unknown = File { syntax: PRIVATE, ..numbered(0) }.words(&[0; 7]);
     assert_refused(unknown.load(), LoadErrorKind::BadInput, &["private syntax", PRIVATE, "Explicit VR"]);
 }

@@ -1,4 +1,4 @@
-//! FITS files that are cut off, lie, or hold no picture.
+//! Tests of FITS files that are truncated, contradict themselves, or hold no image.
 
 use super::super::*;
 use super::writer::Unit;
@@ -12,7 +12,7 @@ fn opened(bytes: &[u8]) -> Result<Volume, LoadError> {
 #[test]
 fn every_cut_is_refused() {
     let whole = picture().bytes();
-    // Behind the last pixel only what fills the block is missing.
+    // Behind the last pixel only the fill of the block is missing.
     for cut in (0..whole.len()).step_by(7).filter(|&cut| cut < 2880 + 12) {
         let error = opened(&whole[..cut]).unwrap_err();
         assert_eq!(error.kind(), LoadErrorKind::BadInput, "{cut}: {error}");
@@ -23,7 +23,7 @@ fn every_cut_is_refused() {
     for cut in 11..packed.len() {
         assert_eq!(opened(&packed[..cut]).unwrap_err().kind(), LoadErrorKind::BadInput, "{cut}");
     }
-    // An extension that is cut off ends the list.
+    // A truncated extension ends the list of units.
     let second = Unit::extension("IMAGE", 8, &[3, 2], (0..6).collect()).bytes();
     for cut in [0, 1, 79, 80, 2000, 2879] {
         assert!(opened(&[whole.as_slice(), &second[..cut]].concat()).is_ok(), "{cut}");
@@ -58,7 +58,7 @@ fn headers_that_lie_are_refused() {
         ),
     ] {
         for bytes in [unit.bytes(), gzip(&unit.bytes())] {
-            // What is compressed may hold more than it is long: then the missing data show when they are read.
+            // Gzipped content may be longer than the file suggests: missing data show only while they are read.
             let error = opened(&bytes).unwrap_err();
             assert!(error.kind() == kind || error.to_string().contains("truncated"), "{words}: {error}");
             if error.kind() == kind && !error.to_string().contains("truncated") {
@@ -75,7 +75,7 @@ fn a_header_without_an_end_is_read_no_further_than_headers_are_long() {
     assert_refused(opened(&endless), LoadErrorKind::Limit, &["no END"]);
     assert_refused(opened(&gzip(&endless)), LoadErrorKind::Limit, &["no END"]);
     assert_refused(opened(&picture().open_header()), LoadErrorKind::BadInput, &["without END"]);
-    // Letters that are none, in comments and in values.
+    // Control characters and invalid UTF-8 in comments and values.
     let mut odd = picture().with("OBJECT", "'\u{1b}[2J x'").with("BSCALE", "nan").with("BZERO", "1e999");
     odd = odd.with("CDELT1", "nan").with("BLANK", "none");
     let mut bytes = odd.bytes();
@@ -102,7 +102,7 @@ fn files_without_a_picture_say_what_they_hold() {
         let bytes: Vec<u8> = units.iter().flat_map(Unit::bytes).collect();
         assert_refused(opened(&bytes), LoadErrorKind::BadInput, &[words]);
     }
-    // A picture beside a compressed one is shown, and the other is told.
+    // An image beside a compressed one is shown, with a remark on the other.
     let both = [picture().bytes(), packed.bytes()].concat();
     assert!(opened(&both).unwrap().remarks()[0].contains("funpack"));
     assert_refused(opened(b"something else"), LoadErrorKind::BadInput, &["SIMPLE"]);

@@ -1,4 +1,4 @@
-//! FITS files: types, scales, several units and axes.
+//! Tests of FITS files: types, scales, several units and axes.
 
 mod broken;
 mod spacing;
@@ -10,7 +10,7 @@ use crate::data::load::tests::shared::{assert_refused, gzip, load_bytes, load_pa
 use crate::data::{Missing, Samples};
 use writer::Unit;
 
-/// 3 x 2 pixels of 16 bits, the lower row first.
+/// An image of 3 x 2 pixels of 16 bits, the lower row first.
 fn picture() -> Unit {
     Unit::primary(16, &[3, 2], [1i16, 2, 3, 4, 5, 6].map(i16::to_be_bytes).concat())
 }
@@ -21,7 +21,7 @@ fn loaded(unit: &Unit) -> Volume {
 
 #[test]
 fn every_type_is_read_with_the_first_row_below() {
-    // Rows of two: the second is above, and comes first.
+    // Two rows of two pixels: the second row is the upper one, and comes first.
     for (bits, data, expected) in [
         (8, vec![1, 2, 3, 255], Samples::U8(vec![3, 255, 1, 2])),
         (16, [1i16, -2, 300, 4].map(i16::to_be_bytes).concat(), Samples::I16(vec![300, 4, 1, -2])),
@@ -67,7 +67,7 @@ fn values_are_scaled_and_what_is_blank_is_missing() {
     }
     let nan = Unit::primary(-32, &[2, 2], [1.0, f32::NAN, 3.0, 4.0].map(f32::to_be_bytes).concat());
     assert_eq!(loaded(&nan).missing().map(Missing::count), Some(1));
-    // Real numbers have no BLANK.
+    // Floating-point arrays have no BLANK.
     let real = Unit::primary(-32, &[2, 1], [1.0f32, 2.0].map(f32::to_be_bytes).concat()).with("BLANK", 1);
     assert_eq!(loaded(&real).missing(), None);
 }
@@ -91,7 +91,7 @@ fn three_axes_are_a_volume_and_a_fourth_are_several() {
     let second = Choice { frame: Some(1), ..Choice::default() };
     let volume = load_bytes("a.fits", &times.bytes(), second).unwrap();
     assert_eq!(*volume.samples(), Samples::U8(vec![15, 16, 17, 12, 13, 14, 21, 22, 23, 18, 19, 20]));
-    // Polarisations are channels with names.
+    // Polarisations are named channels.
     let stokes =
         times.with("CTYPE5", "'STOKES  '").with("CRVAL5", 1.0).with("CRPIX5", 1.0).with("CDELT5", 1.0);
     let Err(LoadError::Several { dimension: Dimension::Channel, offers, .. }) =

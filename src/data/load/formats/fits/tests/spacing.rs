@@ -1,11 +1,11 @@
-//! Distances between voxels: degrees, lengths, spectra, matrices.
+//! Tests of FITS voxel spacing: degrees, lengths, spectra, matrices.
 
 use glam::DVec3;
 
 use super::loaded;
 use super::writer::Unit;
 
-/// What is said of an axis.
+/// World coordinate of an axis: type, unit and step.
 #[derive(Clone, Copy)]
 struct Axis<'a> {
     kind: &'a str,
@@ -17,7 +17,7 @@ fn axis<'a>(kind: &'a str, unit: &'a str, step: f64) -> Axis<'a> {
     Axis { kind, unit, step }
 }
 
-/// A cube with these axes.
+/// A cube whose axes have these world coordinates.
 fn cube(axes: [Axis<'_>; 3]) -> Unit {
     let mut unit = Unit::primary(8, &[2, 2, 2], (0..8).collect());
     for (at, Axis { kind, unit: name, step }) in (1..).zip(axes) {
@@ -29,7 +29,7 @@ fn cube(axes: [Axis<'_>; 3]) -> Unit {
     unit
 }
 
-/// Whether two distances are the same but for rounding.
+/// True if two spacings are equal within rounding.
 fn near(found: DVec3, expected: DVec3) -> bool {
     (found - expected).abs().max_element() < 1e-9
 }
@@ -68,7 +68,7 @@ fn lengths_are_millimetres() {
         assert!(near(volume.spacing_mm() / mm, DVec3::new(2.0, 2.0, 6.0)), "{name}");
         assert!(!volume.has_unknown_scale());
     }
-    // Between galaxies they are longer than a scene can be.
+    // Kiloparsecs are longer than a scene can be.
     let far = loaded(&cube([axis("", "kpc", 2.0), axis("", "kpc", 2.0), axis("", "kpc", 6.0)]));
     assert!(near(far.spacing_mm(), DVec3::new(1.0, 1.0, 3.0)) && far.has_unknown_scale());
 }
@@ -76,7 +76,7 @@ fn lengths_are_millimetres() {
 #[test]
 fn matrices_say_how_long_steps_are() {
     let plain = Unit::primary(8, &[2, 2, 2], (0..8).collect());
-    // A turn by 30 degrees, with steps of 0.1 and 0.2.
+    // A rotation by 30°, with steps of 0.1 and 0.2.
     let (sine, cosine) = 30f64.to_radians().sin_cos();
     let sky = plain.with("CTYPE1", "'RA---TAN'").with("CTYPE2", "'DEC--TAN'").with("CTYPE3", "'FREQ'");
     let turned = sky

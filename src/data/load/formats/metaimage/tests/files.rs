@@ -1,4 +1,4 @@
-//! Voxels in other files, and those that must not be opened.
+//! Tests of voxels in other files, and of files that must not be opened.
 
 use std::fs;
 use std::path::Path;
@@ -9,7 +9,7 @@ use super::{HEADER, VOXELS, assert_refused, header_with, load_path, write, zlib}
 use crate::data::Samples;
 use crate::data::load::{Choice, LoadErrorKind};
 
-/// A folder with the voxels in one file, in a file for each slice, and compressed so.
+/// A folder with the voxels in one file, in one file per slice, in compressed slices, and in rows.
 fn folder() -> TempDir {
     let folder = TempDir::new().unwrap();
     fs::create_dir(folder.path().join("sub")).unwrap();
@@ -53,7 +53,7 @@ fn data_are_found_in_one_file_or_many() {
         let volume = volume.unwrap_or_else(|error| panic!("{data_file}: {error}"));
         assert_eq!(*volume.samples(), Samples::U8(VOXELS.to_vec()), "{data_file}");
     }
-    // The header's own file from its end, or from its beginning.
+    // The header's own file, with the data at its end or after a fixed offset.
     for (skip, data) in [("-1", [b"what ever", &VOXELS[..]].concat()), ("200", VOXELS.to_vec())] {
         let header = header_with(&[&format!("HeaderSize = {skip:>4}")]) + "ElementDataFile = LOCAL\n";
         let header = if skip == "200" { format!("{header:<200}") } else { header };

@@ -1,4 +1,4 @@
-//! `MetaImage` files from the outside: what is read and what is refused.
+//! Tests of `MetaImage` files, end to end: accepted and refused files.
 
 mod files;
 mod geometry;
@@ -12,14 +12,14 @@ use crate::data::load::tests::shared::{assert_refused, gzip, load_path, zlib};
 use crate::data::load::{Choice, LoadError, LoadErrorKind};
 use crate::data::{Meaning, Modality, Samples, Volume};
 
-/// A header of 2 x 2 x 2 bytes, without the field that ends it.
+/// Header of 2 x 2 x 2 bytes, without its last field.
 const HEADER: &str = "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\n";
-/// The data that fit it.
+/// Voxels of the volume that `HEADER` describes.
 const VOXELS: [u8; 8] = [1, 2, 3, 4, 5, 6, 7, 8];
-/// The field that ends it.
+/// Last field, for data behind the header.
 const LOCAL: &str = "ElementDataFile = LOCAL\n";
 
-/// The header with other fields in place of those of the same name.
+/// Returns the header with other fields in place of those with the same name.
 fn header_with(fields: &[&str]) -> String {
     let name = |line: &str| line.split('=').next().unwrap_or_default().to_owned();
     let replaced: Vec<_> = fields.iter().map(|line| name(line)).collect();
@@ -33,7 +33,7 @@ fn write(folder: &TempDir, name: &str, header: &str, data: &[u8]) -> PathBuf {
     path
 }
 
-/// Loads a file of its own: a header with some fields, and data behind it.
+/// Loads a single file: a header with these fields, and data behind it.
 fn load_local(fields: &[&str], data: &[u8], choice: Choice) -> Result<Volume, LoadError> {
     let folder = TempDir::new().unwrap();
     load_path(&write(&folder, "v.mha", &(header_with(fields) + LOCAL), data), choice)

@@ -1,4 +1,4 @@
-//! What a header says of its values.
+//! Tests of the hints that `NIfTI` headers give on values.
 
 use tempfile::TempDir;
 

@@ -1,4 +1,4 @@
-//! `NIfTI` and Analyze files from the outside: what is read and what is refused.
+//! Tests of `NIfTI` and Analyze files, end to end: accepted and refused files.
 
 mod geometry;
 mod hints;
@@ -15,7 +15,7 @@ use crate::data::load::tests::shared::{self, assert_refused, gzip, load_path};
 use crate::data::load::{Choice, Endian, LoadError, LoadErrorKind};
 use crate::data::{Samples, Volume};
 
-/// A header of some form and byte order, whose fields are put in one by one.
+/// Builder of a header in a given byte order, whose fields are set one by one.
 #[derive(Clone)]
 struct Bytes {
     endian: Endian,
@@ -46,13 +46,13 @@ impl Bytes {
         self
     }
 
-    /// The file: the header, and data behind it.
+    /// Returns the file's bytes: the header followed by data.
     fn with(&self, data: &[u8]) -> Vec<u8> {
         [&self.bytes[..], data].concat()
     }
 }
 
-/// A header of 348 bytes, and the four behind it.
+/// A header of 348 bytes, followed by the extender of 4 bytes.
 fn first(endian: Endian, dims: &[i16], datatype: i16, magic: &[u8]) -> Bytes {
     let spacing = [1.0f32, 2.0, 3.0, 4.0, 1.5, 1.0, 1.0, 1.0];
     Bytes { endian, bytes: vec![0; 352] }
@@ -65,7 +65,7 @@ fn first(endian: Endian, dims: &[i16], datatype: i16, magic: &[u8]) -> Bytes {
         .text(344, magic)
 }
 
-/// A header of NIfTI-1 of a file of its own.
+/// A little-endian NIfTI-1 header of a single file.
 fn nifti(dims: &[i16], datatype: i16) -> Bytes {
     first(Endian::Little, dims, datatype, b"n+1\0")
 }
@@ -132,7 +132,7 @@ fn complex_numbers_and_colours_are_shown_as_one_number() {
     assert!(volume.remarks().iter().any(|remark| remark.contains("complex")));
     let imaginary = load_bytes(&file, component(1)).unwrap();
     assert_eq!(*imaginary.samples(), Samples::F32(vec![4.0, -2.0]));
-    // Stretched by two; what is added to real parts is left out of lengths and of imaginary parts.
+    // Scaled by two; the intercept, which applies to real parts, is omitted from magnitudes and imaginary parts.
     let scaled = nifti(&[2, 1, 1], 32).f32(112, &[2.0, 1.0]).with(&complex);
     assert_eq!(*read(&scaled).samples(), Samples::F32(vec![10.0, 4.0]));
     assert_eq!(*load_bytes(&scaled, component(0)).unwrap().samples(), Samples::F32(vec![7.0, 1.0]));

@@ -1,4 +1,4 @@
-//! Headers and voxels in two files, and Analyze.
+//! Tests of header and data in two files, and of Analyze.
 
 use std::fs;
 
@@ -50,7 +50,7 @@ fn either_of_a_pair_can_be_named() {
 fn analyze_says_no_sides() {
     for endian in [Endian::Little, Endian::Big] {
         let folder = TempDir::new().unwrap();
-        // What NIfTI has in these places means nothing here.
+        // Fields that only NIfTI defines are ignored in Analyze files.
         let header = first(endian, &[2, 1, 1, 1], 2, &[0; 4])
             .f32(108, &[0.0, 2.0, 100.0])
             .i16(68, &[1002])

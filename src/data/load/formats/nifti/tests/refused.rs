@@ -1,4 +1,4 @@
-//! Headers that lie, and files that are broken.
+//! Tests of invalid headers and corrupt files, which must be refused.
 
 use super::{Bytes, assert_refused, gzip, load_bytes, nifti, read};
 use crate::data::Samples;

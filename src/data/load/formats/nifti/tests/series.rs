@@ -1,4 +1,4 @@
-//! Files of several volumes.
+//! Tests of files with several volumes: time steps, extra dimensions, vectors.
 
 use super::{assert_refused, gzip, load_bytes, nifti};
 use crate::data::Samples;
@@ -25,7 +25,7 @@ fn time_steps_are_chosen() {
         assert_eq!(names, ["10 s", "11.5 s", "13 s"]);
         assert_refused(load_bytes(&file, frame(3)), LoadErrorKind::BadInput, &["3 time steps", "--frame"]);
     }
-    // What is there can be seen although the rest is not.
+    // Complete time steps are shown although the file is truncated behind them.
     assert!(load_bytes(&file[..file.len() - 2], frame(1)).is_ok());
     assert_refused(load_bytes(&file[..file.len() - 1], frame(2)), LoadErrorKind::BadInput, &["truncated"]);
     let zipped = gzip(&file[..file.len() - 1]);
@@ -43,7 +43,7 @@ fn more_dimensions_are_counted_through() {
         LoadErrorKind::BadInput,
         &["12 time steps", "7 \"1, 0, 1\""],
     );
-    // A length of 0 says nothing, and no dimension is left when all others are one.
+    // A length of 0 means unused, and extra dimensions of length 1 offer no choice.
     let file = nifti(&[2, 1, 1, 0, 1], 2).with(&[1, 2]);
     assert!(load_bytes(&file, Choice::default()).is_ok());
     let many = nifti(&[1, 1, 1, 32767, 32767, 32767, 32767], 2).with(&[1]);
@@ -55,7 +55,7 @@ fn vectors_lie_behind_each_other() {
     let numbers = [3.0f32, 0.0, 1.0, 1.0, 4.0, 2.0, 1.0, 1.0];
     let data: Vec<u8> = numbers.into_iter().flat_map(f32::to_le_bytes).collect();
     let of = |dims: &[i16]| nifti(dims, 16).i16(68, &[1007]);
-    // Two components of two time steps of two voxels.
+    // Two components of two time steps of two voxels each.
     let file = of(&[2, 1, 1, 2, 2]).with(&data);
     for file in [file.clone(), gzip(&file)] {
         let volume = load_bytes(&file, frame(0)).unwrap();

@@ -1,4 +1,4 @@
-//! More than one number for each place: components, colours and time steps.
+//! Tests of several numbers per voxel: components, colours and time steps.
 
 use tempfile::TempDir;
 
@@ -58,7 +58,7 @@ fn the_slowest_axis_holds_time_steps() {
             assert_eq!(*volume.samples(), Samples::U8(bytes[step * 8..][..8].to_vec()), "{encoding}");
         }
     }
-    // Pictures that follow each other, and two axes of them.
+    // Consecutive images, and two axes of them.
     let pictures = ["dimension: 4", "sizes: 2 2 2 2", "kinds: domain domain list time"];
     let third = load(&pictures, &bytes, frame(3)).unwrap();
     assert_eq!((third.dims(), third.samples()), ([2, 2, 1], &Samples::U8(vec![12, 13, 14, 15])));
@@ -91,13 +91,13 @@ fn the_fastest_axis_holds_components() {
     ];
     let lengths = load(&fields, &vectors, Choice::default()).unwrap();
     assert_eq!(*lengths.samples(), Samples::F32(vec![5.0, 13.0]));
-    // A large volume of three values each is one of colours; a small one has time steps.
+    // A large volume with three values per voxel holds colours; a small one holds time steps.
     let steps: Vec<u8> = (0..24).collect();
     let small = load(&["dimension: 4", "sizes: 3 2 2 2"], &steps, frame(1)).unwrap();
     assert_eq!((small.dims(), small.samples()), ([3, 2, 2], &Samples::U8(steps[12..].to_vec())));
     let large = load(&["dimension: 4", "sizes: 3 5 5 5"], &[7; 375], Choice::default()).unwrap();
     assert_eq!((large.dims(), large.value(0, 0, 0)), ([5; 3], 7.0));
-    // Both at once: components before the place and time steps behind it.
+    // Both at once: components before the spatial axes, and time steps behind them.
     let both = ["dimension: 5", "sizes: 2 1 2 1 3", "kinds: complex domain domain domain time"];
     let bytes: Vec<u8> = (0..12).collect();
     let choice = Choice { frame: Some(2), component: Some(1), ..Choice::default() };
@@ -106,7 +106,7 @@ fn the_fastest_axis_holds_components() {
 
 #[test]
 fn components_behind_each_other_are_no_time_steps() {
-    // 3, 4 and 0, then 0, −12 and 5: a plane of each component.
+    // Planar components: 3, 4 and 0 form one vector, 0, −12 and 5 the other.
     let planes: Vec<u8> = [3i16, 0, 4, -12, 0, 5].iter().flat_map(|value| value.to_be_bytes()).collect();
     let fields =
         ["dimension: 4", "sizes: 2 1 1 3", "type: int16", "endian: big", "kinds: space space space vector"];
@@ -141,7 +141,7 @@ fn a_list_holds_volumes_wherever_it_stands() {
         assert_eq!((volume.dims(), volume.samples()), ([2, 2, 1], &Samples::U8(expected)));
     }
     assert_refused(load(&fields, &bytes, component(1)), LoadErrorKind::BadInput, &["7 time steps"]);
-    // With times behind the places it is one of channels.
+    // With a time axis behind the spatial ones, a list holds channels.
     let both = ["dimension: 5", "sizes: 2 2 1 1 3", "kinds: list domain domain domain time"];
     let choice = Choice { channel: Some(1), ..frame(2) };
     assert_eq!(*load(&both, &bytes[..12], choice).unwrap().samples(), Samples::U8(vec![9, 11]));

@@ -1,9 +1,9 @@
-//! What headers say of the values.
+//! Tests of the hints that NRRD headers give on values.
 
 use super::{HEADER, VOXELS, load_attached};
 use crate::data::{Hints, MAX_LABEL_NAME, MAX_LABELS, Meaning, Missing, Modality};
 
-/// What is made of a header with these lines.
+/// Returns the hints of a header with these lines added.
 fn hints_of(lines: &[&str]) -> Hints {
     let header = lines.iter().fold(HEADER.to_owned(), |header, line| header + line + "\n");
     load_attached(&header, &VOXELS).unwrap().hints().clone()
@@ -27,7 +27,7 @@ fn what_values_are_is_understood() {
     assert!(hints_of(&["old min: -1000", "old max: 3000"]).is_rescaled);
     assert_eq!(hints_of(&["DICOM_0028_0120:=-2000"]).padding, Some(-2000.0));
     assert_eq!(hints_of(&["padding value:=0"]).padding, Some(0.0));
-    // DICOM's is a number of the scanner's, which were rescaled as the header says.
+    // DICOM's padding value is a stored number, rescaled as the header says.
     let rescale = ["DICOM_0028_1053:=2", "DICOM_0028_1052:=-1024"];
     let with = |padding| hints_of(&[rescale[0], rescale[1], padding]).padding;
     assert_eq!(with("DICOM_0028_0120:=-500"), Some(-2024.0));

@@ -1,4 +1,4 @@
-//! Which files of a folder are the slices of one volume, by their names.
+//! Grouping of a folder's files into volumes, by the numbers in their names.
 
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -6,22 +6,22 @@ use std::path::Path;
 use super::counters::{NameCounter, counters, slice_column};
 use super::picture::Kind;
 
-/// Files that are slices of one volume, by their numbers in the list of all.
+/// Files that are slices of one volume, as indices into the list of all.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Group {
-    /// What their names have in common, with `#` where they count.
+    /// Common part of their names, with `#` in place of the slice number.
     pub(super) name: String,
     pub(super) kind: Kind,
     pub(super) files: Vec<usize>,
-    /// What is missing in their numbers.
+    /// Remark about gaps in the numbering.
     pub(super) gap: Option<String>,
 }
 
-/// A name in pieces: text, and digits between.
+/// File name split into texts and the digits between them.
 struct Pieces {
     texts: Vec<String>,
     digits: Vec<String>,
-    /// Kind of each of the numbers.
+    /// Meaning of each of the numbers.
     counters: Vec<NameCounter>,
 }
 
@@ -48,7 +48,7 @@ impl Pieces {
         Self { texts, digits, counters }
     }
 
-    /// The name with `#` in place of some of its digits.
+    /// Returns the name with `#` in place of those digits that count.
     fn name(&self, is_counted: impl Fn(usize) -> bool) -> String {
         let mut name = self.texts.first().cloned().unwrap_or_default();
         for (at, (digits, text)) in self.digits.iter().zip(self.texts.iter().skip(1)).enumerate() {
@@ -59,7 +59,8 @@ impl Pieces {
     }
 }
 
-/// A name without the mark of 32 hexadecimal digits by which some databases keep files apart (RFC 9562, 4): it says nothing.
+/// Removes a UUID from a name (32 hexadecimal digits, RFC 9562, 4), by which some databases keep files apart: it
+/// carries no order.
 fn without_mark(name: &str) -> String {
     const GROUPS: [usize; 5] = [8, 4, 4, 4, 12];
     const MARK_BYTES: usize = 36;
@@ -75,12 +76,12 @@ fn without_mark(name: &str) -> String {
     at.map_or_else(|| name.to_owned(), |at| [&name[..at], &name[at + MARK_BYTES..]].concat())
 }
 
-/// Name with `#` in place of all numbers, which slices have in common.
+/// Name with `#` in place of all numbers, which the slices of a volume have in common.
 pub(super) fn pattern(path: &Path) -> String {
     Pieces::of(path).name(|_| true)
 }
 
-/// Sorts pictures, in natural order, into groups: those whose names differ in the number that counts slices.
+/// Groups pictures, in natural order: members of a group differ in the number that counts slices.
 pub(super) fn groups<'a>(files: impl IntoIterator<Item = (&'a Path, Kind)>) -> Vec<Group> {
     let files: Vec<(Pieces, Kind)> = files.into_iter().map(|(path, kind)| (Pieces::of(path), kind)).collect();
     let alike = gathered((0..files.len()).map(|at| {
@@ -105,7 +106,8 @@ pub(super) fn groups<'a>(files: impl IntoIterator<Item = (&'a Path, Kind)>) -> V
             let key: Vec<&str> = others.map(|&column| digits(member)[column].as_str()).collect();
             (key, member)
         }));
-        // Numbers that go on together, as a count and the time of day, count together: one of them alone tells all apart.
+        // Numbers that change together, such as a counter and the time of day, count together: one of them alone
+        // distinguishes all members.
         let tells_all = |&column: &usize| {
             let numbers: HashSet<&str> =
                 members.iter().map(|&member| digits(member)[column].as_str()).collect();
@@ -128,7 +130,7 @@ pub(super) fn groups<'a>(files: impl IntoIterator<Item = (&'a Path, Kind)>) -> V
     groups
 }
 
-/// Things with the same key together, in the order in which keys come first.
+/// Groups items by key, in the order in which the keys first occur.
 fn gathered<K: Clone + Eq + std::hash::Hash>(
     things: impl IntoIterator<Item = (K, usize)>,
 ) -> Vec<(K, Vec<usize>)> {
@@ -144,7 +146,7 @@ fn gathered<K: Clone + Eq + std::hash::Hash>(
     groups
 }
 
-/// What is missing in numbers that go on by equal steps.
+/// Remark about missing numbers in a sequence of equal steps.
 fn gap(numbers: &[Option<u64>]) -> Option<String> {
     let steps = numbers.windows(2).filter_map(|pair| {
         let (before, after) = (pair[0]?, pair[1]?);
@@ -223,7 +225,7 @@ mod tests {
         }
     }
 
-    /// All orders of some things.
+    /// All permutations of some items.
     fn orders<T: Clone>(things: &[T]) -> Vec<Vec<T>> {
         if things.is_empty() {
             return vec![Vec::new()];
@@ -238,7 +240,7 @@ mod tests {
 
     #[test]
     fn slices_are_told_in_any_order_of_letters() {
-        // The word of a counter, and how many of it there are; the first counts the slices.
+        // Word before a counter, and how many values it has; the first counts the slices.
         let sets: [&[(&str, usize)]; 8] = [
             &[("z", 8), ("ch", 2)],
             &[("Z", 3), ("C", 2), ("T", 4)],

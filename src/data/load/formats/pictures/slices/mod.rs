@@ -1,6 +1,6 @@
-//! Slices of a volume in files of their own: pictures that are numbered, and single ones.
+//! Image stacks: volumes whose slices are files of their own, numbered pictures, and single pictures.
 //!
-//! PNG (<https://www.w3.org/TR/png-3/>), JPEG (ITU-R T.81), BMP and TIFF. Nothing says how far apart slices are.
+//! PNG (<https://www.w3.org/TR/png-3/>), JPEG (ITU-R T.81), BMP and TIFF. The distance of the slices is unknown.
 
 mod counters;
 mod groups;
@@ -25,10 +25,10 @@ use crate::data::{Hints, Volume, plain};
 use groups::{Group, groups, pattern};
 use picture::{Header, Kind, look};
 
-/// Series of which the sizes are looked up for the list of them: as many as a screen has lines for.
+/// Maximum number of series whose sizes are looked up for the list: as many as a screen has lines for.
 const MOST_LOOKED_UP: usize = 24;
 
-/// A picture as a volume of one slice.
+/// Reader of a single picture, as a volume of one slice.
 pub(in crate::data::load) const READER: Reader = Reader {
     name: "PNG, JPEG, BMP",
     endings: &[".png", ".jpg", ".jpeg", ".bmp"],
@@ -48,7 +48,8 @@ fn load_one(source: Source<'_>) -> Result<Volume, LoadError> {
 /// Loads the volume whose slices are among the files of a folder, in natural order; `None` where none is a picture.
 ///
 /// # Errors
-/// [`LoadError::Several`] where there are several volumes, `BadInput` for slices that do not go together or are broken.
+/// [`LoadError::Several`] where there are several volumes, `BadInput` for slices that do not match each other or are
+/// broken.
 pub(in crate::data::load) fn load(
     attempt: Attempt<'_>,
     files: &[PathBuf],
@@ -98,10 +99,10 @@ fn of_slice(path: &Path) -> Attempt<'_> {
     Attempt { what: "read the slice", path }
 }
 
-/// Remark on files that are named like slices of a group, or at least like pictures, and hold none: copies that were
-/// cut off or damaged.
+/// Remark about files that are named like slices of a group, or at least like pictures, but are none: truncated or
+/// damaged copies.
 fn damaged(others: &[&Path], group: &Group, pictures: &[(&Path, Kind)]) -> Option<String> {
-    // As many as a line has room for.
+    // As many as fit into a line.
     const MOST_NAMED: usize = 3;
     let own = group.files.first().map(|&file| pattern(pictures[file].0));
     let known: HashSet<String> = pictures.iter().map(|(path, _)| pattern(path)).collect();
@@ -132,9 +133,9 @@ fn is_named_like_a_picture(path: &Path) -> bool {
     endings.into_iter().any(|ending| name.ends_with(ending))
 }
 
-/// Beside the slices of one volume, single pictures are previews and the like.
+/// Leaves out single pictures beside the slices of one volume: previews and the like.
 fn leave_out_strays(groups: &mut Vec<Group>, remarks: &mut Vec<String>) {
-    // Of fewer nobody could tell which are the strays.
+    // With fewer slices, strays cannot be distinguished from them.
     const FEWEST_SLICES: usize = 3;
     let is_stray = |group: &Group| group.files.len() == 1;
     let stacks = groups.iter().filter(|group| !is_stray(group)).count();
@@ -145,7 +146,7 @@ fn leave_out_strays(groups: &mut Vec<Group>, remarks: &mut Vec<String>) {
     }
 }
 
-/// What is offered where there are several volumes.
+/// List of the volumes to choose from, where there are several.
 fn offers(
     groups: &[Group],
     pictures: &[(&Path, Kind)],
@@ -171,7 +172,7 @@ fn offers(
         .collect()
 }
 
-/// The file that says how all belong together, if the first does: it is read in place of all.
+/// Returns the first file if its metadata describe the whole set of files: it is read in place of all.
 fn tiff_set<'a>(pictures: &[(&'a Path, Kind)], control: &LoadControl) -> Result<Option<&'a Path>, LoadError> {
     let [(first, _), (second, _), ..] = *pictures else { return Ok(None) };
     let name = second.file_name().unwrap_or_default().to_string_lossy();
@@ -186,7 +187,7 @@ fn load_tiff(path: &Path, options: &LoadOptions, control: &LoadControl) -> Resul
     (tiff::READER.load)(Source { path, input, start, options, control })
 }
 
-/// The volume of slices of one kind.
+/// Reads the volume from slices of one format.
 fn volume(
     attempt: Attempt<'_>,
     kind: Kind,
@@ -226,7 +227,7 @@ fn volume(
     Parts { name, extent, placement, voxels, hints: Hints::default() }.volume(attempt)
 }
 
-/// Two slices must be alike, and each file hold one.
+/// Checks that two slices have equal size and type, and that each file holds only one.
 fn check(attempt: Attempt<'_>, slices: [(&Header, &PathBuf); 2]) -> Result<(), LoadError> {
     let [(model, _), (header, _)] = slices;
     let [first, path] =

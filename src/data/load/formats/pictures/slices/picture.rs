@@ -1,4 +1,4 @@
-//! A slice in a file of its own: PNG, JPEG, BMP or TIFF.
+//! Slice in a file of its own: recognition, header and decoding of PNG, JPEG, BMP and TIFF.
 
 use std::io::{self, BufRead as _, BufReader, Read as _};
 
@@ -13,15 +13,15 @@ use crate::data::load::reading::samples::reserve;
 use crate::data::load::{Endian, LoadControl, LoadError, LoadOptions};
 use crate::data::plain;
 
-/// Bytes by which pictures are told.
+/// Number of bytes that picture formats are detected by.
 pub(super) const MARK_BYTES: usize = 32;
 
-/// Headers of BMP are so long (`BITMAPCOREHEADER` to `BITMAPV5HEADER`): "BM" alone may begin a text.
+/// Lengths of BMP headers (`BITMAPCOREHEADER` to `BITMAPV5HEADER`): "BM" alone may begin a text.
 const BMP_HEADERS: [u8; 7] = [12, 40, 52, 56, 64, 108, 124];
 
 const HELP: &str = "copy the file again, or save it anew as PNG or TIFF";
 
-/// A format of pictures.
+/// File format of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) enum Kind {
     Png,
@@ -31,7 +31,7 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    /// By how a file begins.
+    /// Detects the format by the first bytes of a file.
     pub(super) fn of(start: &[u8]) -> Option<Self> {
         let is_bmp = || {
             let header = start.get(14..18);
@@ -49,14 +49,14 @@ impl Kind {
         }
     }
 
-    /// The format of a file, if it is a picture.
+    /// Detects the format of a file; `None` if it is not a picture.
     ///
     /// # Errors
     /// `Io` where it cannot be read.
     pub(super) fn of_file(attempt: Attempt<'_>) -> Result<Option<Self>, LoadError> {
         let input = Input::open(attempt)?;
         let mut start = Vec::new();
-        // No buffer of the whole size for a look at a few bytes.
+        // Without the large buffer, for a few bytes.
         let mut file = input.reader.into_inner();
         let read = file.by_ref().take(MARK_BYTES as u64).read_to_end(&mut start);
         read.map_err(|error| attempt.io(error))?;
@@ -73,21 +73,21 @@ impl Kind {
     }
 }
 
-/// What is known of a picture before it is decoded.
+/// Properties of a picture that are known before it is decoded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Header {
-    /// Width and height.
+    /// Width and height, in pixels.
     pub(super) size: [u64; 2],
-    /// How its numbers are stored once it is decoded.
+    /// Storage of its numbers after decoding.
     pub(super) stored: Stored,
-    /// Pages that could be slices.
+    /// Number of pages that could be slices.
     pub(super) pages: usize,
 }
 
-/// Looks at a picture, and where `decoded` is asked for decodes it.
+/// Reads the header of a picture, and decodes it if `is_decoded`; otherwise the bytes are empty.
 ///
 /// # Errors
-/// `BadInput` for a broken file, or one whose numbers are not read; `Limit` over the budget.
+/// `BadInput` for a broken file, or an unsupported number type; `Limit` over the budget.
 pub(super) fn look(
     attempt: Attempt<'_>,
     kind: Kind,
@@ -106,35 +106,36 @@ pub(super) fn look(
     Ok((header, bytes))
 }
 
-/// Bytes of a BMP up to the end of its compression's number.
+/// Bytes of a BMP up to the end of its compression field.
 const BMP_HEADER: usize = 34;
 
-/// Most pixels that a file of some length can hold. Decoders make room for as many as its header says, and some fill what
-/// is missing with grey.
+/// Upper bound of the pixels in a file of some length. Decoders allocate as many as the header announces, and some
+/// fill the missing ones with grey.
 fn most_pixels(format: ImageFormat, length: u64, first: &[u8]) -> u64 {
     match format {
-        // A bit for each block of 8 x 8 pixels: the shortest code of its mean.
+        // One bit for each block of 8 x 8 pixels: the shortest code of a DC coefficient.
         ImageFormat::Jpeg => length.saturating_mul(8 * 64),
         ImageFormat::Bmp => most_of_bmp(length, first),
-        // Deflate makes 1032 of one byte (RFC 1951: 258 bytes of two bits), and up to eight pixels are in one of these.
+        // Deflate expands a byte to at most 1032 (RFC 1951: 258 bytes from two bits), and a byte holds up to eight
+        // pixels.
         _ => length.saturating_mul(1032 * 8),
     }
 }
 
-/// The same of a BMP that begins so.
+/// Upper bound of the pixels in a BMP with these first bytes.
 fn most_of_bmp(length: u64, first: &[u8]) -> u64 {
     let word = |at: usize| first.get(at..at + 2).map_or(0, |bytes| u16::from_le_bytes([bytes[0], bytes[1]]));
-    // The first headers, of twelve bytes, have neither runs nor their bits there.
+    // Headers of twelve bytes have no compression, and their bit depth is elsewhere.
     let is_old = word(14) < 40;
     match word(30) {
-        // Runs, of 255 pixels in two bytes at most.
+        // Run-length encoding: at most 255 pixels in two bytes.
         1 | 2 if !is_old => length.saturating_mul(128),
         _ => length.saturating_mul(8) / if is_old { 1 } else { u64::from(word(28)).max(1) },
     }
 }
 
-/// Whether a JPEG comes to its end, for which its decoder does not ask: a marker behind the first one that begins a scan
-/// (ITU-T T.81, B.1.1.3 and B.2.1). In the data of a scan no marker is like it.
+/// Returns true if a JPEG has an end-of-image marker after its first scan, which its decoder does not check (ITU-T
+/// T.81, B.1.1.3 and B.2.1). Entropy-coded data cannot contain this marker.
 fn has_end(input: &mut Input) -> io::Result<bool> {
     let mut bytes = Vec::new();
     input.seek(0)?;
@@ -143,9 +144,9 @@ fn has_end(input: &mut Input) -> io::Result<bool> {
     let mut at = 2;
     while let Some(&[0xFF, marker, high, low]) = bytes.get(at..).and_then(<[u8]>::first_chunk) {
         at += match marker {
-            // Filled up.
+            // Fill byte before a marker.
             0xFF => 1,
-            // Without a length.
+            // Marker without a length field.
             0x01 | 0xD0..=0xD7 => 2,
             _ => 2 + usize::from(u16::from_be_bytes([high, low])),
         };
@@ -153,7 +154,7 @@ fn has_end(input: &mut Input) -> io::Result<bool> {
             return Ok(bytes.get(at..).is_some_and(|data| data.windows(2).any(|two| two == [0xFF, 0xD9])));
         }
     }
-    // Its decoder knows more of what is none.
+    // Not a valid sequence of markers: left to the decoder to report.
     Ok(true)
 }
 
@@ -178,7 +179,7 @@ fn look_at_image(
             "close other programs, or load a smaller picture",
         )
     };
-    // JPEG is read whole before it is decoded.
+    // A JPEG file is read whole before it is decoded.
     if input.len > budget {
         return Err(too_large(input.len));
     }
@@ -217,7 +218,7 @@ fn look_at_image(
     };
     let component = options.choice.component_among(components, true);
     let part = Part::asked(attempt, component, components, true)?;
-    // Decoders give numbers in the order of this machine.
+    // Decoders return numbers in machine byte order.
     let endian = if cfg!(target_endian = "big") { Endian::Big } else { Endian::Little };
     let stored = Stored { number, endian, components, part };
     let header = Header { size: [width.into(), height.into()], stored, pages: 1 };

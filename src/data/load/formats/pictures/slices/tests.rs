@@ -1,4 +1,4 @@
-//! Folders of pictures from the outside.
+//! Tests that load folders of pictures through the public interface.
 
 use std::path::Path;
 
@@ -79,7 +79,7 @@ fn of_a_folder_the_files_that_are_meant_are_read() {
 fn all_kinds_of_pictures_also_single() {
     let picture = grey(4, &[7; 16]);
     for ending in ["png", "bmp", "jpg"] {
-        // The encoder of BMP takes grey, that of JPEG as well.
+        // Encoders of BMP and JPEG accept grey.
         let name = format!("one.{ending}");
         let one = folder(&[(name.as_str(), picture.clone())]);
         let volume = load_path(&one.path().join(&name)).unwrap();
@@ -145,7 +145,7 @@ fn broken_and_huge_pictures_are_refused() {
         assert_refused(load_path(stack.path()), LoadErrorKind::BadInput, &["a2.png", "the picture is"]);
         assert_refused(load_path(&path), LoadErrorKind::BadInput, &["the picture is"]);
     }
-    // The size of a picture is at byte 16; its checksum is made to fit.
+    // The size of a PNG picture is at byte 16; its checksum is recomputed.
     let mut huge = whole.clone();
     huge[16..24].copy_from_slice(&[0x7F, 0xFF, 0xFF, 0xFF, 0x7F, 0xFF, 0xFF, 0xFF]);
     let mut checksum = flate2::Crc::new();
@@ -154,7 +154,7 @@ fn broken_and_huge_pictures_are_refused() {
     std::fs::write(&path, &huge).unwrap();
     let error = load_path(&path).unwrap_err();
     assert!(matches!(error.kind(), LoadErrorKind::Limit | LoadErrorKind::BadInput), "{error}");
-    // Half of a picture with loss, in which decoders fill what is missing with grey.
+    // Half of a JPEG picture: decoders fill the missing rest with grey.
     let values: Vec<u8> = (0..64 * 64).map(|at| (at * 37 % 251) as u8).collect();
     let lossy = folder(&[("a.jpg", grey(64, &values))]);
     let path = lossy.path().join("a.jpg");
@@ -203,14 +203,14 @@ fn a_slice_that_is_no_picture_is_said() {
     }
     assert!(damaged(b"garbage", "other.jpeg").contains("\"other.jpeg\" is left out"));
     assert!(!damaged(b"garbage", "other.dat").contains("left out"));
-    // Of slices in TIFF files one is left, which is read as a file of its own.
+    // A single slice is left, which is read as a file of its own.
     let two = TempDir::new().unwrap();
     grey(2, &[1, 2]).save_with_format(two.path().join("a0.png"), ImageFormat::Png).unwrap();
     std::fs::write(two.path().join("a1.png"), b"garbage").unwrap();
     let volume = load_path(two.path()).unwrap();
     assert_eq!(*volume.samples(), Samples::U8(vec![1, 2]));
     assert!(volume.remarks()[0].contains("\"a1.png\" is left out"));
-    // Those of other series are not told of this one.
+    // Damaged files of another series are not reported.
     let series = folder(&[
         ("a1.png", grey(1, &[1])),
         ("a2.png", grey(1, &[2])),

@@ -1,14 +1,14 @@
-//! What can be wrong with a TIFF file, in words.
+//! Error messages about defects of TIFF files.
 
 use std::io;
 
 use crate::data::attempt::Attempt;
 use crate::data::load::LoadError;
 
-/// What helps where a file is broken.
+/// Help text for broken files.
 pub(super) const HELP: &str = "copy the file again, or save it anew with the program that wrote it";
 
-/// A part of the file cannot be read.
+/// Error for an unreadable or invalid part of a file, which `field` names.
 pub(super) fn unreadable(attempt: Attempt<'_>, field: &str, error: io::Error) -> LoadError {
     match error.kind() {
         io::ErrorKind::UnexpectedEof => {
@@ -23,7 +23,7 @@ pub(super) fn unreadable(attempt: Attempt<'_>, field: &str, error: io::Error) ->
     }
 }
 
-/// A way of compressing that is not read, in words.
+/// Name of an unsupported compression scheme for messages.
 pub(super) fn compression_name(compression: u64) -> &'static str {
     match compression {
         2..=4 => "for fax machines (CCITT)",

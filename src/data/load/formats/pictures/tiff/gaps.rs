@@ -1,17 +1,17 @@
-//! Recordings that have not all of their pages: they were stopped, or a file of theirs is not there.
+//! Incomplete recordings: pages are missing because it was stopped, or because one of its files is missing.
 
 use super::stack::Slice;
 
-/// Slices that are shown of a recording, with what the user is told of the others.
+/// Slices of a recording that are shown, with a remark on the missing ones.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct SliceRun {
-    /// From the first that has a page to the last; those between without a page are empty.
+    /// Slices from the first that has a page to the last; gaps in between are empty.
     pub(super) slices: Vec<Option<Slice>>,
     pub(super) remark: Option<String>,
 }
 
 impl SliceRun {
-    /// Run of slices of which some have no page; `None` where none has one.
+    /// Creates a run from slices some of which lack a page; `None` where none has one.
     pub(super) fn new(slices: &[Option<Slice>]) -> Option<Self> {
         let first = slices.iter().position(Option::is_some)?;
         let last = slices.iter().rposition(Option::is_some)?;
@@ -34,9 +34,9 @@ impl SliceRun {
     }
 }
 
-/// Numbers in words, not all of many.
+/// Lists numbers as text, shortened where there are many.
 fn listed(numbers: &[usize]) -> String {
-    // As many as a line has room for.
+    // As many as fit into a line.
     const MOST: usize = 8;
     let mut words: Vec<String> = numbers.iter().take(MOST).map(usize::to_string).collect();
     if numbers.len() > MOST {

@@ -1,8 +1,8 @@
 //! TIFF and `BigTIFF`: pages of pixels, which are the slices of a volume.
 //!
 //! After TIFF 6.0 (Adobe, 1992), the technical notes 1 and 3 that followed it, and the design of `BigTIFF`
-//! (<https://www.awaresystems.be/imaging/tiff/bigtiff.html>). What programs for microscopes say of their pages is
-//! understood: OME-TIFF, `ImageJ`, LSM. World space is as the voxels lie: the file does not say which way a body does.
+//! (<https://www.awaresystems.be/imaging/tiff/bigtiff.html>). The metadata of microscope software are read: OME-TIFF,
+//! `ImageJ`, LSM. World axes are those of the grid: TIFF has no anatomical orientation.
 
 mod fault;
 mod file;
@@ -27,7 +27,7 @@ use stack::Stack;
 
 pub(in crate::data::load) use single::Picture;
 
-/// How a file begins: byte order, and 42 or, of `BigTIFF`, 43.
+/// Returns true if the first bytes are those of a TIFF file: byte order, and version 42 or, for `BigTIFF`, 43.
 pub(super) fn is_tiff(magic: &[u8]) -> bool {
     [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"].iter().any(|mark| magic.starts_with(*mark))
 }
@@ -39,7 +39,7 @@ pub(in crate::data::load) const READER: Reader = Reader {
     load,
 };
 
-/// OME-XML in a file of its own, which says what the pages of TIFF files beside it are.
+/// Reader of OME-XML in a file of its own, which describes the pages of TIFF files beside it.
 pub(in crate::data::load) const COMPANION: Reader = Reader {
     name: "OME-TIFF set",
     endings: &[".companion.ome", ".ome"],
@@ -47,7 +47,7 @@ pub(in crate::data::load) const COMPANION: Reader = Reader {
     load: load_companion,
 };
 
-/// Action that messages name.
+/// Action named in error messages.
 const WHAT: &str = "read the TIFF volume";
 
 /// Loads a TIFF file.
@@ -74,7 +74,7 @@ fn load(source: Source<'_>) -> Result<Volume, LoadError> {
     volume(attempt, tiff, stack, options, control)
 }
 
-/// Loads the volume of a file of OME-XML that lies beside its TIFF files.
+/// Loads the volume of an OME-XML file that lies beside its TIFF files.
 #[expect(clippy::needless_pass_by_value, reason = "as all readers are called")]
 fn load_companion(source: Source<'_>) -> Result<Volume, LoadError> {
     let Source { path, options, control, .. } = source;
@@ -89,7 +89,7 @@ fn load_companion(source: Source<'_>) -> Result<Volume, LoadError> {
     witness.vouch(of_first, volume(of_first, tiff, stack, options, control))
 }
 
-/// The volume of a stack, with what the first page says of values.
+/// Reads the volume of a stack, with the padding value and the palette of the first page.
 fn volume(
     attempt: Attempt<'_>,
     mut tiff: Tiff,
@@ -97,7 +97,7 @@ fn volume(
     options: &LoadOptions,
     control: &LoadControl,
 ) -> Result<Volume, LoadError> {
-    // A number needs no more.
+    // Enough for any number.
     let no_data = tiff.text(tag::NO_DATA, 64).unwrap_or_default();
     if let Ok(stored) = no_data.trim().parse::<f64>() {
         let [slope, intercept] = stack.scale;

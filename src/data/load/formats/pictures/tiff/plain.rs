@@ -1,4 +1,4 @@
-//! Pages of which nothing more is said: all of the first one's kind are slices, in their order.
+//! TIFF files without further metadata: all pages that match the first one are slices, in file order.
 
 use super::file::Tiff;
 use super::file::page::Meaning;
@@ -9,7 +9,8 @@ use crate::data::load::reading::input::stem;
 use crate::data::load::reading::placement::Placement;
 use crate::data::load::{Choice, LoadError};
 
-/// The pages that are slices: those like the first that is no thumbnail. What is left out is said in remarks.
+/// Indices of the pages that are slices: those that match the first page that is not a thumbnail or mask. Adds
+/// remarks on the pages that are left out.
 pub(super) fn usable(tiff: &Tiff, remarks: &mut Vec<String>) -> Vec<usize> {
     let pages = &tiff.pages;
     let all_aside = pages.iter().all(|page| page.is_aside);
@@ -29,7 +30,7 @@ pub(super) fn usable(tiff: &Tiff, remarks: &mut Vec<String>) -> Vec<usize> {
     like
 }
 
-/// The stack of a file of which nothing more is known.
+/// Builds the stack of a file without further metadata.
 pub(super) fn stack(attempt: Attempt<'_>, tiff: &Tiff, choice: &Choice) -> Result<Stack, LoadError> {
     let mut placement = Placement::unknown();
     let pages = usable(tiff, &mut placement.remarks);

@@ -1,4 +1,4 @@
-//! A TIFF file that holds one slice, beside others that do.
+//! TIFF file with a single slice, which is part of a numbered stack of files.
 
 use super::file::Tiff;
 use super::file::page::{Page, tag};
@@ -11,17 +11,17 @@ use crate::data::load::reading::number::Stored;
 use crate::data::load::reading::read_files::note;
 use crate::data::load::{LoadControl, LoadError, LoadOptions};
 
-/// The one page of a file.
+/// Single page of a file, with the file.
 pub(in crate::data::load) struct Picture {
     tiff: Tiff,
     page: Page,
     number: usize,
-    /// Pages that could be slices as well.
+    /// Number of pages that could be slices.
     pub(in crate::data::load) pages: usize,
 }
 
 impl Picture {
-    /// Looks at a file.
+    /// Reads the directories of a file.
     ///
     /// # Errors
     /// As the reader of whole volumes.
@@ -38,21 +38,22 @@ impl Picture {
         Ok(Self { tiff, page, number, pages: pages.len() })
     }
 
-    /// Whether it says how the pages of several files belong together, and names this one, or a list of all.
+    /// True if its OME-XML describes how several files belong together, and names `file` or refers to the file that
+    /// lists them.
     pub(in crate::data::load) fn names(&mut self, file: &str) -> bool {
         let description = self.tiff.text(tag::DESCRIPTION, ome::MOST_XML_BYTES).unwrap_or_default();
         ome::is_ome(&description) && (description.contains(file) || description.contains("<BinaryOnly"))
     }
 
-    /// Its width and height.
+    /// Width and height, in pixels.
     pub(in crate::data::load) fn size(&self) -> [u64; 2] {
         [self.page.width, self.page.height]
     }
 
-    /// How its numbers are stored once it is decoded.
+    /// Storage of the samples after decoding.
     ///
     /// # Errors
-    /// `BadInput` for kinds that are not read, `Limit` for a page over the budget.
+    /// `BadInput` for unsupported encodings, `Limit` for a page over the budget.
     pub(in crate::data::load) fn stored(
         &self,
         attempt: Attempt<'_>,
@@ -62,7 +63,7 @@ impl Picture {
         stored(attempt, &self.page, None, options)
     }
 
-    /// Its numbers.
+    /// Decodes the samples of the page.
     ///
     /// # Errors
     /// `BadInput` where the file is broken.

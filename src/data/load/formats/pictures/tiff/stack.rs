@@ -1,4 +1,4 @@
-//! Which pages of which files are the slices of a volume, and their voxels.
+//! Slices of a TIFF volume, as pages of one or several files, and reading of their voxels.
 
 use std::path::{Path, PathBuf};
 
@@ -17,34 +17,34 @@ use crate::data::load::reading::voxels::Meant;
 use crate::data::load::{Choice, Dimension, Endian, LoadControl, LoadError, LoadOptions, Offer};
 use crate::data::{Hints, Volume};
 
-/// Bytes of pages that are fetched before they are unpacked: pages are longer than what is in them only by mistake, or
-/// where many of them are the same bytes.
+/// Bytes of compressed pages that are read before they are decoded. Compressed pages are longer than their pixels
+/// only by mistake, or where many pages share the same bytes.
 const PACKED_BYTES: u64 = 32 << 20;
 
-/// A page of one of several files.
+/// Page of one of several files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Slice {
-    /// 0 is the file that is opened, others are those of [`Stack::beside`].
+    /// Index of the file: 0 is the opened one, others are those of [`Stack::beside`] plus 1.
     pub(super) file: usize,
     pub(super) page: usize,
 }
 
-/// A volume, before its voxels are read.
+/// Volume before its voxels are read.
 pub(super) struct Stack {
     pub(super) name: String,
-    /// One after the other; what has no page is empty.
+    /// Slices in order; those without a page are empty.
     pub(super) slices: Vec<Option<Slice>>,
-    /// Files besides the one that is opened.
+    /// Files besides the opened one.
     pub(super) beside: Vec<PathBuf>,
-    /// The sample that is meant, where those of a page are channels.
+    /// Index of the chosen sample, where the samples of a page are channels.
     pub(super) sample: Option<usize>,
     pub(super) placement: Placement,
     pub(super) hints: Hints,
-    /// What values are multiplied by, and what is added then.
+    /// Slope and intercept of the values.
     pub(super) scale: [f64; 2],
 }
 
-/// Channels and time steps that a file has.
+/// Numbers of channels and time steps in a file.
 pub(super) struct Steps {
     pub(super) dims: [u64; 3],
     pub(super) channels: usize,
@@ -52,20 +52,20 @@ pub(super) struct Steps {
     pub(super) frames: usize,
 }
 
-/// What of them is meant.
+/// Chosen channel and time step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Chosen {
     pub(super) channel: usize,
     pub(super) frame: usize,
-    /// Each time step is one slice, and all of them together are shown as a volume.
+    /// True if each time step is one slice, and all together are shown as a volume.
     pub(super) is_time_depth: bool,
 }
 
 impl Steps {
-    /// Asks what is meant where there are several.
+    /// Selects the channel and the time step by the user's choice, where there are several.
     pub(super) fn chosen(&self, attempt: Attempt<'_>, choice: &Choice) -> Result<Chosen, LoadError> {
         let [width, height, slices] = self.dims;
-        // A recording of one slice over time is a volume only with time as its depth.
+        // A time series of one slice is a volume only with time as its depth.
         let is_time_depth = slices == 1 && self.frames > 1 && choice.frame.is_none();
         let dims = [width, height, if is_time_depth { self.frames as u64 } else { slices }];
         let offers = |count: usize| {
@@ -84,7 +84,7 @@ impl Steps {
 }
 
 impl Chosen {
-    /// The time step and the slice of each slice of the volume.
+    /// Time step and slice index of each slice of the volume.
     pub(super) fn slices(&self, slices: usize, frames: usize) -> Vec<[usize; 2]> {
         if self.is_time_depth {
             (0..frames).map(|frame| [frame, 0]).collect()
@@ -93,7 +93,7 @@ impl Chosen {
         }
     }
 
-    /// What is to be said of it: nobody knows how far apart times are.
+    /// Adds the remark on time as depth to a placement; the scale along it is unknown.
     pub(super) fn remark(&self, placement: &mut Placement) {
         if self.is_time_depth {
             let remark = "each time step is one slice: they are stacked in the order of time";
@@ -106,7 +106,7 @@ impl Chosen {
     }
 }
 
-/// The files of a stack: the first, and one of the others at a time.
+/// Files of a stack: the first, and one of the others open at a time.
 struct Files<'a> {
     attempt: Attempt<'a>,
     first: Tiff,
@@ -116,7 +116,7 @@ struct Files<'a> {
 }
 
 impl Files<'_> {
-    /// Does something with one of the files.
+    /// Calls a function with one of the files.
     fn with<T>(
         &mut self,
         number: usize,
@@ -140,10 +140,10 @@ impl Files<'_> {
 }
 
 impl Stack {
-    /// Reads the voxels.
+    /// Reads the voxels and assembles the volume.
     ///
     /// # Errors
-    /// `BadInput` where pages are broken, not there, or differ; `Limit` over the budget.
+    /// `BadInput` where pages are broken, missing, or differ; `Limit` over the budget.
     pub(super) fn volume(
         self,
         attempt: Attempt<'_>,
@@ -163,12 +163,12 @@ impl Stack {
         let extent = Extent::checked(attempt, "pages", dims, stored.voxel_type(), options.room(control))?;
         check_page_bytes(attempt, &model, options)?;
         placement.remarks.extend(stored.part.remark().map(str::to_owned));
-        // That is for screens and paper: what was measured, or marked in a mask, is what is stored.
+        // Inversion is a property of display: the stored values are the measurements, or those of the mask.
         if model.is_inverted {
             let remark = "0 is said to stand for white: values are those that are stored";
             placement.remarks.push(remark.to_owned());
         }
-        // The first page, before there is room for all: one that has not what it announces asks for none.
+        // The first page is checked before memory is allocated for all, in case that it lacks the announced data.
         files.with(first.file, |attempt, tiff| {
             tiff.check_room(attempt, first.page, sample.filter(|_| model.is_planar), control)
         })?;
@@ -190,7 +190,7 @@ impl Stack {
                         if !found.is_like(&model) {
                             return Err(unlike(attempt, page, &found, &model));
                         }
-                        // Where samples lie beside each other all are fetched, and one is taken later.
+                        // Interleaved samples are all read, and one is selected later.
                         tiff.fetch(attempt, page, sample.filter(|_| found.is_planar), control)
                     })?;
                     bytes += of_page.len();
@@ -219,7 +219,7 @@ fn page_of(attempt: Attempt<'_>, tiff: &Tiff, number: usize) -> Result<Page, Loa
     })
 }
 
-/// The component that the user has named. Channels are chosen as such.
+/// Component that the user has chosen; channels are chosen as layers.
 fn said_component(page: &Page, options: &LoadOptions) -> Option<usize> {
     match page.meaning {
         Meaning::Channels => options.choice.layer_among(page.samples),
@@ -227,15 +227,15 @@ fn said_component(page: &Page, options: &LoadOptions) -> Option<usize> {
     }
 }
 
-/// The sample that is fetched alone, where the user has named a component.
+/// Sample that is read alone, where the user has chosen a component.
 fn chosen_sample(page: &Page, options: &LoadOptions) -> Option<usize> {
     said_component(page, options).filter(|_| page.meaning != Meaning::Channels)
 }
 
-/// How the numbers of unpacked pages are stored.
+/// Storage of the samples of decoded pages.
 ///
 /// # Errors
-/// `BadInput` for pages of kinds that are not read, and for a component that there is not.
+/// `BadInput` for unsupported encodings, and for a component that does not exist.
 pub(super) fn stored(
     attempt: Attempt<'_>,
     page: &Page,
@@ -252,13 +252,13 @@ pub(super) fn stored(
     });
     let is_color = page.meaning != Meaning::Channels;
     let part = Part::asked(attempt, component, page.samples, is_color)?;
-    // A sample that lies by itself is fetched by itself.
+    // A sample in strips of its own is read alone.
     let is_alone = page.is_planar && sample.is_some();
     let (components, part) = if is_alone { (1, Part::Component(0)) } else { (page.samples, part) };
     Ok(Stored { number, endian: Endian::Little, components, part })
 }
 
-/// A page is unpacked as a whole.
+/// Checks that a decoded page fits into the budget, since pages are decoded as a whole.
 pub(super) fn check_page_bytes(
     attempt: Attempt<'_>,
     page: &Page,
@@ -274,7 +274,7 @@ pub(super) fn check_page_bytes(
     ))
 }
 
-/// Two pages that are no slices of one volume.
+/// Error for two pages that cannot be slices of one volume.
 fn unlike(attempt: Attempt<'_>, number: usize, page: &Page, model: &Page) -> LoadError {
     let say = |page: &Page| {
         let Page { width, height, bits, samples, .. } = page;

@@ -1,8 +1,7 @@
-//! Number types and byte orders, by how few bits the voxels would take if each were told as its difference from the one
-//! before.
+//! Detection of number type and byte order, by the estimated entropy of differences between neighbouring voxels.
 //!
-//! Bits for each byte of the file can be compared whatever the type: a wrong order puts the noise of the low byte into the
-//! high one, two voxels that are taken for one number pay for the second in full, and half a number jumps.
+//! Bits per byte of the file are comparable between types: a wrong byte order moves the noise of the low byte into
+//! the high one, two voxels taken for one number pay for the second in full, and half numbers jump.
 
 use rayon::prelude::*;
 
@@ -11,51 +10,52 @@ use super::spots::{Spots, unrest};
 use crate::data::VoxelType;
 use crate::data::load::Endian;
 
-/// Bytes of each spot that are looked at: 16 spots have 128 KiB, in 50 ways.
+/// Bytes of each sample block that are analysed: 128 KiB over 16 blocks, for each of 50 combinations.
 const LOOKED_AT: usize = 8 << 10;
 
-/// Neighbours that share a measure of how large their differences are, as coders adapt.
+/// Number of neighbours that share a scale of differences, as in adaptive coders.
 const BLOCK: usize = 32;
 
-/// Numbers have a sign, or none, when their neighbours then differ by less than this share.
+/// Ratio of mean differences below which one of the signed and unsigned interpretations is preferred.
 const SMOOTHER: f64 = 0.995;
 
-/// Twice as wide numbers must save this share of the bits: where little happens, pairs of numbers cost hardly less.
+/// Share of the bits that numbers of twice the size must save: in homogeneous regions pairs of numbers cost hardly
+/// less.
 const WIDE: f64 = 0.06;
 
-/// Sizes of numbers that anybody measures.
+/// Usual magnitudes of measured numbers.
 const USUAL: std::ops::Range<f64> = 1e-20..1e20;
 
-/// More than one number of so many is -1 where none is by chance.
+/// Reciprocal share of numbers that are -1 beyond which this is no coincidence.
 const MASK: usize = 100;
 
-/// Differences of a block that may be told in full.
+/// Maximum number of differences per block that are coded in full, as outliers.
 const TOLD: usize = 3;
 
-/// A number type and byte order, and where in the file numbers begin.
+/// Interpretation of the bytes: number type, byte order, and alignment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Code {
     pub(super) voxel_type: VoxelType,
     pub(super) endian: Endian,
-    /// The first byte of the voxels, modulo their size.
+    /// Offset of the first voxel, modulo the size of a number.
     pub(super) phase: usize,
-    /// Bits for each byte of the file; at most 8.
+    /// Estimated entropy in bits per byte of the file; at most 8.
     pub(super) bits: f64,
-    /// Those, with what is unusual counted as more.
+    /// Entropy with penalties for unusual properties; interpretations are ranked by it.
     pub(super) cost: f64,
-    /// Mean difference of neighbours, which is large where small numbers seem to follow the largest.
+    /// Mean difference of neighbours; large where a wrong sign makes small numbers follow the largest.
     pub(super) step: f64,
-    /// Mean distance of the numbers from 0.
+    /// Mean absolute value of the numbers.
     pub(super) size: f64,
     has_negative: bool,
     is_mask: bool,
-    /// Of signed bytes: whether they seem to have a sign.
+    /// For signed bytes: true if the distribution suggests a sign.
     is_signed_byte: Option<bool>,
-    /// The same numbers with or without a sign, if that makes other numbers of them.
+    /// Interpretation with the opposite signedness, if it gives different numbers.
     pub(super) twin: Option<VoxelType>,
 }
 
-/// All number types and byte orders, the likeliest first.
+/// Ranks all interpretations of the blocks, most likely first.
 pub(super) fn ranked(spots: &Spots, said: Said) -> Vec<Code> {
     let mut ways = Vec::new();
     for voxel_type in VoxelType::ALL {
@@ -86,9 +86,9 @@ pub(super) fn ranked(spots: &Spots, said: Said) -> Vec<Code> {
             + WIDE * f64::from(voxel_type.bytes().ilog2());
         let is_said = said.voxel_type.is_none_or(|said| said == voxel_type)
             && said.endian.is_none_or(|said| said == endian || voxel_type.bytes() == 1);
-        // What is said is believed unless the bytes cry out against it.
+        // Hints of the file name are believed unless the content strongly contradicts.
         let contradicts = if is_said { 0.0 } else { 0.6 };
-        // A tenth of a bit for files that hold nothing but constants, which all types tell for nothing.
+        // A tenth of a bit for files of constants, whose entropy is 0 in every interpretation.
         let cost = (bits + 0.1) * (1.0 + unusual + contradicts);
         let has_negative = keys.iter().flatten().any(|key| *key < 0);
         let count = keys.iter().map(Vec::len).sum::<usize>().max(1) as f64;
@@ -109,7 +109,7 @@ pub(super) fn ranked(spots: &Spots, said: Said) -> Vec<Code> {
     };
     let mut codes: Vec<Code> = ways.into_par_iter().map(code).collect();
     codes.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    // Signed or not, the rows are the same: the better of the two stands for both.
+    // Signed and unsigned give the same rows: the better of the two stands for both.
     let mut kept: Vec<Code> = Vec::new();
     for code in codes {
         let twin = kept.iter_mut().find(|other| other.is_twin_of(&code));
@@ -122,7 +122,7 @@ pub(super) fn ranked(spots: &Spots, said: Said) -> Vec<Code> {
 }
 
 impl Code {
-    /// Whether another is the same but for the sign.
+    /// Returns true if two interpretations differ only in signedness.
     fn is_twin_of(&self, other: &Self) -> bool {
         let is_whole = |code: &Self| !matches!(code.voxel_type, VoxelType::F32 | VoxelType::F64);
         is_whole(self)
@@ -131,11 +131,11 @@ impl Code {
             && (self.endian, self.phase) == (other.endian, other.phase)
     }
 
-    /// Chooses between numbers with a sign and without, which take as many bits.
+    /// Chooses between the signed and unsigned interpretation, which have equal entropy.
     fn settle(&mut self, twin: &Self, said: Said) {
-        // Where the highest digit is never used, the numbers are the same.
+        // Without numbers that have the highest bit set, both give the same values.
         let differ = self.has_negative || twin.has_negative;
-        // Wide numbers that would all be huge are small ones with a sign.
+        // Large unsigned numbers throughout are rather small signed ones.
         let is_smaller = self.voxel_type.bytes() > 1 && twin.size < 0.5 * self.size;
         let is_smoother = twin.step < SMOOTHER * self.step || is_smaller && self.step >= SMOOTHER * twin.step;
         let is_byte = self.voxel_type.bytes() == 1;
@@ -155,20 +155,20 @@ impl Code {
     }
 }
 
-/// Where in a spot most is to be seen, rather not at its very beginning: there may be a header.
+/// Offset of the part of a block with the greatest variation, except for its very beginning, which may be a header.
 fn liveliest(bytes: &[u8]) -> usize {
     let pieces = (0..bytes.len().saturating_sub(LOOKED_AT / 2)).step_by(LOOKED_AT / 2).skip(1);
     let unrest = |from: usize| unrest(&bytes[from..bytes.len().min(from + LOOKED_AT)]);
     pieces.max_by(|a, b| unrest(*a).total_cmp(&unrest(*b))).unwrap_or_default()
 }
 
-/// How many bytes to skip from a place of the file to the next number.
+/// Number of bytes to skip from an offset in the file to the next number.
 pub(super) fn first(at: u64, voxel_type: VoxelType, phase: usize) -> usize {
     let size = voxel_type.bytes() as u64;
     ((phase as u64 + size - at % size) % size) as usize
 }
 
-/// Integers in the order of the numbers: of floats, as many apart as there are floats between them.
+/// Maps numbers to integers in the same order; for floats, the difference counts the floats in between.
 fn keys(bytes: &[u8], voxel_type: VoxelType, endian: Endian) -> Vec<i64> {
     macro_rules! keys {
         ($number:ty, $key:expr) => {
@@ -196,7 +196,7 @@ fn keys(bytes: &[u8], voxel_type: VoxelType, endian: Endian) -> Vec<i64> {
     }
 }
 
-/// Mean difference of neighbours.
+/// Mean absolute difference of neighbours.
 fn step(keys: &[Vec<i64>]) -> f64 {
     let pairs = keys.iter().flat_map(|keys| keys.windows(2));
     let (sum, count) =
@@ -204,10 +204,10 @@ fn step(keys: &[Vec<i64>]) -> f64 {
     if count > 0.0 { sum / count } else { 0.0 }
 }
 
-/// Bits for each byte when numbers are told as differences, in blocks of one scale.
+/// Estimates the bits per byte for differences between neighbours, with one scale per block.
 fn bits_for_each_byte(keys: &[Vec<i64>], voxel_type: VoxelType) -> f64 {
     let all = 8.0 * voxel_type.bytes() as f64;
-    // Digits that are zero in every number cost nothing.
+    // Low bits that are zero in every number cost nothing.
     let used = keys.iter().flatten().fold(0, |used, key| used | key);
     let shift = if used == 0 { 0 } else { used.trailing_zeros() };
     let linear = linear_scale(keys, voxel_type);
@@ -229,14 +229,14 @@ fn bits_for_each_byte(keys: &[Vec<i64>], voxel_type: VoxelType) -> f64 {
     if count == 0 { 8.0 } else { bits / (count * voxel_type.bytes()) as f64 }
 }
 
-/// Whether whole numbers are all multiples of 256: rather, their bytes are in the other order.
+/// Returns true if all integers are multiples of 256, so that the byte order is probably the opposite.
 fn has_empty_byte(keys: &[Vec<i64>], voxel_type: VoxelType) -> bool {
     let used = keys.iter().flatten().fold(0, |used, key| used | key);
     !matches!(voxel_type, VoxelType::F32 | VoxelType::F64) && used != 0 && used.trailing_zeros() >= 8
 }
 
-/// Whether bytes have a sign: values around 0 go on into what else would be the largest, and there are few where the signs
-/// meet at the other end. How far values jump says nothing here, as there may be but two.
+/// Returns true if bytes seem to be signed: values are frequent on both sides of 0 and rare at both ends of the
+/// signed range. Differences do not help here, since there may be only two values.
 fn is_signed(keys: &[Vec<i64>]) -> bool {
     let count = |values: std::ops::RangeInclusive<i64>| {
         keys.iter().flatten().filter(|key| values.contains(key)).count()
@@ -246,7 +246,8 @@ fn is_signed(keys: &[Vec<i64>]) -> bool {
     around_zero > 4 * at_the_ends && !is_mask(keys)
 }
 
-/// Whether numbers pile up at 0 and at −1, which is all ones: rather, they have no sign, and are as large as they can be.
+/// Returns true if the numbers cluster at −1, which is all ones: they are rather unsigned, with the maximum in a
+/// mask.
 fn is_mask(keys: &[Vec<i64>]) -> bool {
     let count = |value: i64| keys.iter().flatten().filter(|key| **key == value).count();
     let all: usize = keys.iter().map(Vec::len).sum();
@@ -254,7 +255,8 @@ fn is_mask(keys: &[Vec<i64>]) -> bool {
     inside * MASK > all && inside > 4 * beside
 }
 
-/// Of floats, which lie dense around zero: numbers as multiples of the smallest step between the largest of them.
+/// Function that maps floats, which are dense around zero, to multiples of the smallest step between the largest
+/// ones; `None` where too many are small.
 fn linear_scale(keys: &[Vec<i64>], voxel_type: VoxelType) -> Option<Box<dyn Fn(i64) -> f64>> {
     let (number, digits): (fn(i64) -> f64, i32) = match voxel_type {
         VoxelType::F32 => (float_of, 24),
@@ -269,9 +271,9 @@ fn linear_scale(keys: &[Vec<i64>], voxel_type: VoxelType) -> Option<Box<dyn Fn(i
         .filter(|size| size.is_finite())
         .collect();
     sizes.sort_unstable_by(f64::total_cmp);
-    // Of the largest but a hundredth, which may be anything.
+    // Of the 99th percentile, since the largest hundredth may be anything.
     let large = sizes.get(sizes.len() * 99 / 100).copied().filter(|large| USUAL.contains(large))?;
-    // Smaller numbers would lose digits, which must be told: there may be few of them.
+    // Smaller numbers would lose digits that must be coded; few are acceptable.
     let is_small = |size: &&f64| **size > 0.0 && **size < large / 1024.0;
     if sizes.iter().filter(is_small).count() * 50 > sizes.len() {
         return None;
@@ -292,7 +294,8 @@ fn double_of(key: i64) -> f64 {
     f64::from_bits((key ^ (((key >> 63) as u64) >> 1) as i64) as u64)
 }
 
-/// Bits of a block of differences; the largest may be told in full, as the edge of an object is.
+/// Estimated bits of a block of differences; the largest ones may be coded in full, for instance at the edge of an
+/// object.
 fn block_bits(steps: impl Iterator<Item = f64>, all: f64) -> f64 {
     let (mut sum, mut count) = (0.0, 0);
     let mut largest = [0.0f64; TOLD];
@@ -309,17 +312,17 @@ fn block_bits(steps: impl Iterator<Item = f64>, all: f64) -> f64 {
     let mut least = f64::INFINITY;
     for told in 0..=TOLD.min(count) {
         let rest = (count - told) as f64;
-        // The entropy of a two-sided exponential distribution of that mean, log2(2e · mean), from 0 on.
+        // Entropy of a Laplace distribution with this mean, log2(2e · mean), at least 0.
         let mean = if rest == 0.0 { 0.0 } else { (sum / rest).max(0.0) };
         let bits = (1.0 + 2.0 * std::f64::consts::E * mean).log2().min(all) * rest;
-        // What is told in full also says where it is.
+        // Outliers also cost the bits of their position.
         least = least.min(bits + told as f64 * (all + (count as f64).log2()));
         sum -= largest.get(told).copied().unwrap_or_default();
     }
     least
 }
 
-/// How unusual the numbers are, as a share of their cost.
+/// Penalty for unusual numbers, as a share of their cost.
 fn unusual(keys: &[Vec<i64>], voxel_type: VoxelType) -> f64 {
     let share = |odd: &dyn Fn(i64) -> bool| {
         let count = keys.iter().map(Vec::len).sum::<usize>().max(1);
@@ -339,7 +342,7 @@ fn unusual(keys: &[Vec<i64>], voxel_type: VoxelType) -> f64 {
         }
         VoxelType::I8 => 0.02,
         VoxelType::I16 => 0.005,
-        // Counts of more than a hundred million are rarer than floats, which look like that.
+        // Counts over a hundred million are rarer than floats, whose bit patterns look like them.
         VoxelType::U32 | VoxelType::I32 => 0.03 + 0.3 * share(&|key| key.unsigned_abs() > 1 << 27),
     }
 }

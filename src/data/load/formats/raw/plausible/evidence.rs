@@ -1,57 +1,57 @@
-//! What speaks for a way of storing a file.
+//! Evidence for a proposed layout of a raw file, and the decision whether it is clear.
 
 use super::super::layout::RawLayout;
 use super::super::said::Said;
 use super::codes::Code;
 use super::shapes::{HEADERS, Shape};
 
-/// Deviations beyond which agreement is no chance, whatever the number of distances that were tried.
+/// Standard deviations beyond which agreement is not chance, whatever the number of lags that were tried.
 const SURE: f64 = 4.0;
 
-/// Numbers whose differences take so many bits a byte are hardly told from noise, of which each takes 8.
+/// Entropy, in bits per byte, from which numbers are hardly distinguishable from noise, which has 8.
 const NOISE_BITS: f64 = 7.5;
 
-/// A score that is so much higher than the next is clear: above what a usual header costs (0.15), which a slice more or
-/// less can imitate, it would never be.
+/// Score difference to the next proposal that is clear. It is below the penalty of a usual header (0.15), which one
+/// slice more or less can imitate, or no proposal would be clear.
 const CLEAR: f64 = 0.1;
 
-/// So much less likely is the other sign.
+/// Deduction from the score for the opposite signedness.
 const TWIN: f64 = 0.05;
 
-/// What speaks for a proposal. Differences are shares of the range of the values.
+/// Evidence for a proposal. Differences are relative to the value range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Evidence {
     /// Mean difference of neighbours along x, y and z.
     pub neighbours: [f64; 3],
-    /// Mean difference of voxels that have nothing to do with each other.
+    /// Mean difference of unrelated voxels.
     pub strangers: f64,
-    /// How much nearer the next row is than what lies beside it, as a share of that.
+    /// Relative depth of the dip at the next row.
     pub row_depth: f64,
-    /// The same of the next slice.
+    /// Relative depth of the dip at the next slice.
     pub slice_depth: f64,
-    /// Whether rows agree more than by chance.
+    /// True if rows agree more than by chance.
     pub rows_agree: bool,
-    /// Whether slices agree more than by chance.
+    /// True if slices agree more than by chance.
     pub slices_agree: bool,
-    /// Whether the file's name says these dimensions.
+    /// True if the file name gives these dimensions.
     pub is_named: bool,
-    /// Bits that a byte of the file takes when told as differences.
+    /// Estimated entropy of differences, in bits per byte of the file.
     pub bits: f64,
-    /// Whether this is far likelier than all others.
+    /// True if this proposal is far more likely than all others.
     pub is_clear: bool,
     pub(super) score: f64,
 }
 
-/// A way of storing a file, and what speaks for it.
+/// Proposed layout of a raw file, with the evidence for it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Proposal {
-    /// How the file would be stored.
+    /// Layout of the voxels in the file.
     pub layout: RawLayout,
-    /// What speaks for it.
+    /// Evidence for the layout, for the user.
     pub evidence: Evidence,
 }
 
-/// A proposal, and the same with or without a sign if that makes another picture.
+/// Creates a proposal, and that of the opposite signedness if it gives a different image.
 pub(super) fn of(code: &Code, shape: &Shape, said: Said) -> impl Iterator<Item = Proposal> {
     let layout = RawLayout {
         dims: shape.dims,
@@ -79,8 +79,8 @@ pub(super) fn of(code: &Code, shape: &Shape, said: Said) -> impl Iterator<Item =
     std::iter::once(Proposal { layout, evidence }).chain(twin)
 }
 
-/// Says of the first whether it is far likelier than all others: whether its rows and slices agree beyond chance, its
-/// numbers are not noise, and nothing else comes near, but for the sign of the numbers.
+/// Decides whether the first proposal is clear: its rows and slices agree beyond chance, its numbers are not noise,
+/// and no other proposal comes near, except for the signedness.
 pub(super) fn judge(found: &mut [Proposal]) {
     let Some((first, others)) = found.split_first_mut() else { return };
     let Evidence { rows_agree, slices_agree, bits, score, .. } = first.evidence;
@@ -89,7 +89,7 @@ pub(super) fn judge(found: &mut [Proposal]) {
         a.dims != b.dims || a.offset != b.offset || a.voxel_type.bytes() != b.voxel_type.bytes()
     };
     let next = others.iter().find(is_other).map_or(f64::NEG_INFINITY, |other| other.evidence.score);
-    // A header that nobody has may be something else.
+    // An unusual header may be something else.
     let is_usual = HEADERS.contains(&first.layout.offset);
     first.evidence.is_clear =
         is_usual && rows_agree && slices_agree && bits < NOISE_BITS && score > next + CLEAR;

@@ -1,4 +1,5 @@
-//! How much voxels differ from those a number of voxels further on in the file, and whether that number is a row or a slice.
+//! Autocorrelation of the voxel stream: finds row and slice lengths as minima of the mean absolute difference over
+//! lag.
 
 use std::io;
 use std::ops::Range;
@@ -12,38 +13,38 @@ use super::spots::Spots;
 use crate::data::VoxelType;
 use crate::data::load::Endian;
 
-/// The shortest row that is guessed, and the fewest rows of a slice.
+/// Minimum row length, and minimum number of rows of a slice.
 pub(super) const SHORTEST: usize = 8;
 
-/// The longest row that is looked for; longer ones can be said by the file's name.
+/// Maximum row length that is searched for, in voxels; longer ones can only be given by the file name.
 pub(super) const LONGEST_ROW: usize = 4096;
 
-/// Voxels of all spots that are compared with others.
+/// Number of voxels, over all blocks, that are compared with others.
 const STARTS: usize = 8192;
 
-/// Runs of voxels, of all spots, that are compared with another slice: of bytes that are in memory more, which cost no
-/// reading.
+/// Number of runs of voxels, over all blocks, that are compared with another slice: in a file, and in memory, where
+/// no reading is needed.
 const RUNS: [usize; 2] = [16, 64];
 
-/// Voxels that lie near each other, whose results are compared with those of others to see what chance does.
+/// Number of adjacent voxels whose results form one sample of the statistics, to estimate the standard deviation.
 const GROUP: usize = 128;
 
-/// Bytes that are read in one piece for slices whose size nothing says: two of 1024 × 1024 voxels of two bytes.
+/// Bytes that are read in one piece to search for slices of unknown size: two of 1024 × 1024 voxels of two bytes.
 const LONG_BYTES: u64 = 4 << 20;
 
-/// Comparisons of voxels in it with rows behind them: a millisecond or two, as they lie together.
+/// Number of voxel pairs that are compared in it: a millisecond or two, since they are contiguous.
 const LONG_PAIRS: usize = 1 << 22;
 
-/// Numbers of rows that are proposed because voxels agree.
+/// Maximum number of slice heights that are proposed by agreement.
 const FOUND: usize = 6;
 
-/// A dip along rows may be so many times deeper than that from row to row: rows may lie nearer together than their voxels.
+/// Maximum ratio of the dip along rows to that across rows: rows may be closer together than their voxels.
 const AS_DEEP: f64 = 3.0;
 
-/// Shares of the voxels that are below black and above white: no single value decides.
+/// Quantiles of the values that become black and white, so that no single outlier decides.
 const CLIPPED: [f64; 2] = [0.005, 0.995];
 
-/// How grey levels are made of numbers: from 0 to 1.
+/// Mapping of numbers to grey levels from 0 to 1.
 #[derive(Debug, Clone, Copy)]
 struct Greys {
     voxel_type: VoxelType,
@@ -55,7 +56,7 @@ struct Greys {
 impl Greys {
     fn grey(&self, value: f64) -> f32 {
         let grey = (value - self.low) / self.per_grey;
-        // What is no number is black.
+        // NaN becomes black.
         if grey > 0.0 { grey.min(1.0) as f32 } else { 0.0 }
     }
 
@@ -66,32 +67,32 @@ impl Greys {
     }
 }
 
-/// How much less voxels differ from those at a distance than from those around that place.
+/// Local minimum of the mean difference at a lag, against the lags next to it.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Dip {
-    /// Mean difference at the distance.
+    /// Mean absolute difference at the lag, in grey levels.
     pub(super) difference: f64,
-    /// What it is less, as a share of the difference around: 0 for no dip.
+    /// Relative depth against the difference at the lags around: 0 for no dip.
     pub(super) depth: f64,
-    /// How many times deeper than what chance makes of it.
+    /// Depth in standard deviations of chance.
     pub(super) sigmas: f64,
 }
 
-/// Differences of voxels and their neighbours, summed in groups.
+/// Absolute differences of voxels at a lag and around it, summed in groups.
 #[derive(Debug, Default)]
 struct Groups(Vec<Sums>);
 
 #[derive(Debug, Clone, Copy, Default)]
 struct Sums {
     at: f64,
-    /// Around it, along a row and from row to row.
+    /// Sums at the lags around it: along a row, and from row to row.
     around: [f64; 2],
     count: f64,
 }
 
 impl Groups {
-    /// The dip along rows, which a wrong length of rows makes no deeper; unless there is hardly one from row to row, as
-    /// at wrong numbers of rows.
+    /// Dip along rows, which a wrong row length does not deepen; limited where there is hardly one across rows, as
+    /// for wrong numbers of rows.
     fn dip(&self) -> Dip {
         let [along, across] = [0, 1].map(|which| self.dip_along(which));
         let most = AS_DEEP * across.depth;
@@ -107,7 +108,7 @@ impl Groups {
         let at: f64 = self.0.iter().map(|sums| sums.at).sum();
         let around: f64 = self.0.iter().map(|sums| sums.around[which]).sum();
         let gain: f64 = gains().sum();
-        // The spread of the groups' gains tells how far their sum may be off by chance.
+        // The spread of the groups' gains gives the standard error of their sum.
         let n = self.0.len() as f64;
         let spread: f64 = gains().map(|group| (group - gain / n).powi(2)).sum();
         let deviation = (spread * n / (n - 1.0).max(1.0)).sqrt();
@@ -116,29 +117,29 @@ impl Groups {
     }
 }
 
-/// A spot's voxels.
+/// Grey levels of a sample block.
 #[derive(Debug)]
 struct Stretch {
-    /// The place of the first voxel in the file.
+    /// Offset of its first voxel in the file, in bytes.
     at: u64,
     greys: Vec<f32>,
-    /// Where something is to be seen.
+    /// Runs of voxels where the content varies.
     runs: Vec<Range<usize>>,
 }
 
-/// Voxels that are compared with another slice, lying together.
+/// Number of contiguous voxels that are compared with another slice.
 const RUN: usize = 256;
 
-/// Runs whose parts differ by less than this share of the most show little.
+/// Minimum variation of a run, as a share of the greatest.
 const LEAST_UNREST: f64 = 0.05;
 
-/// Runs of voxels where something is to be seen.
+/// Runs of voxels where the content varies, in a scattered order.
 fn runs(greys: &[f32]) -> Vec<Range<usize>> {
     let mut found: Vec<(Range<usize>, f64)> = (0..greys.len())
         .step_by(RUN)
         .map(|start| {
             let run = start..(start + RUN).min(greys.len());
-            // Means of eight, which noise changes less than objects do.
+            // Means of eight voxels, to reduce noise.
             let means: Vec<f64> = greys[run.clone()]
                 .chunks(8)
                 .map(|part| part.iter().map(|&grey| f64::from(grey)).sum::<f64>() / 8.0)
@@ -149,23 +150,23 @@ fn runs(greys: &[f32]) -> Vec<Range<usize>> {
         .collect();
     let most = found.iter().map(|run| run.1).fold(0.0, f64::max);
     found.retain(|run| run.1 >= LEAST_UNREST * most);
-    // From everywhere, whichever number of them is taken: the golden section spreads them.
+    // Multiplicative (Fibonacci) hashing: any number of leading runs is spread over the block.
     let count = found.len();
     let mut order: Vec<usize> = (0..count).collect();
     order.sort_by_key(|&at| (at as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15));
     order.into_iter().map(|at| found[at].0.clone()).collect()
 }
 
-/// Voxels of one type, and how much they differ at each distance.
+/// Voxels of one interpretation, and their mean differences by lag.
 #[derive(Debug)]
 pub(super) struct Lags {
     greys: Greys,
     stretches: Vec<Stretch>,
-    /// Mean difference at each distance in voxels, from 0 on.
+    /// Mean absolute difference at each lag in voxels, from 0.
     pub(super) differences: Vec<f64>,
-    /// Mean difference of voxels that have nothing to do with each other.
+    /// Mean absolute difference of unrelated voxels.
     pub(super) unlike: f64,
-    /// Voxels of one long piece around the middle of the file.
+    /// Grey levels of one long piece from the middle of the file.
     long: Vec<f32>,
 }
 
@@ -176,7 +177,7 @@ impl Lags {
         let mut all = Vec::new();
         for spot in &spots.0 {
             let skip = skip(spot.at, &spot.bytes);
-            // Every seventh will do, and that is no power of two.
+            // Every seventh value is enough for quantiles; seven is not a power of two.
             let mut at = 0usize;
             each_value(&spot.bytes[skip..], voxel_type, endian, |value| {
                 if at.is_multiple_of(7) && value.is_finite() {
@@ -214,19 +215,19 @@ impl Lags {
         Ok(lags)
     }
 
-    /// Voxels of each spot that are compared: as far apart as they can be with room for the longest distance.
+    /// Start voxels of comparisons in a block: evenly spread, with room for the longest lag.
     fn starts(stretch: &Stretch, count: usize, longest: usize) -> impl Iterator<Item = usize> + use<> {
         let room = stretch.greys.len().saturating_sub(longest);
         (0..room).step_by((room / count).max(1)).take(count)
     }
 
-    /// Voxels compared with those of other spots, in another order.
+    /// Mean absolute difference of voxels at unrelated positions of all blocks.
     fn of_strangers(&self) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0);
         let all: Vec<f32> =
             self.stretches.iter().flat_map(|stretch| stretch.greys.iter().copied().step_by(61)).collect();
         for (at, grey) in all.iter().enumerate() {
-            // A step that has no factor in common with lengths in use, about 0.618 of the whole.
+            // A step (prime 7919) that is coprime with usual lengths, from an offset of 5/8 of the whole.
             let other = (at * 7919 + all.len() * 5 / 8) % all.len().max(1);
             sum += f64::from((grey - all[other]).abs());
             count += 1.0;
@@ -234,7 +235,7 @@ impl Lags {
         if count > 0.0 { sum / count } else { 0.0 }
     }
 
-    /// Whether voxels in a row of so many are nearer to those in the next row than to their neighbours.
+    /// Dip at a row length: voxels are more similar to the next row than to the voxels next to that.
     pub(super) fn row(&self, length: usize) -> Dip {
         let mut groups = Vec::new();
         for stretch in &self.stretches {
@@ -256,7 +257,7 @@ impl Lags {
         Groups(groups).dip()
     }
 
-    /// Numbers of rows at whose distance voxels are nearer than a row before and behind, the nearest first.
+    /// Numbers of rows at whose distance the long piece has local minima of the difference, deepest first.
     pub(super) fn slices(&self, row: usize) -> Vec<usize> {
         let long = &self.long;
         let most = long.len() / 2 / row;
@@ -284,7 +285,7 @@ impl Lags {
         found.into_iter().map(|(rows, _)| rows).collect()
     }
 
-    /// Whether voxels are nearer to those of the next slice than to those beside and above these.
+    /// Dip at a slice length: voxels are more similar to the next slice than to the voxels around that.
     pub(super) fn slice(&self, bytes: &mut RawBytes, row: usize, rows: usize) -> io::Result<Dip> {
         let size = self.greys.voxel_type.bytes();
         if rows < 2 {
@@ -296,7 +297,7 @@ impl Lags {
         let runs = RUNS[usize::from(bytes.is_held())].div_ceil(self.stretches.len().max(1));
         for stretch in &self.stretches {
             for run in stretch.runs.iter().take(runs) {
-                // Voxels that lie together: one read.
+                // Contiguous voxels: one read.
                 let here = &stretch.greys[run.clone()];
                 let at = stretch.at + (run.start * size) as u64;
                 let length = (here.len() + 2 * reach) * size;
@@ -313,7 +314,7 @@ impl Lags {
                 if read < length {
                     continue;
                 }
-                // Those in the row before, in the same row from one before to one behind, and in the row behind.
+                // The row before, the same row with one voxel more at both ends, and the row after.
                 let part =
                     |from: usize, count: usize| self.greys.of(&buffer[from * size..(from + count) * size]);
                 let [before, behind] = [1, 1 + 2 * row].map(|from| part(from, here.len()));
@@ -335,7 +336,7 @@ impl Lags {
     }
 }
 
-/// How much voxels differ from others, all together; eight sums at a time do not wait for each other.
+/// Sum of absolute differences; eight independent sums allow vectorisation.
 fn distance(here: &[f32], there: &[f32]) -> f64 {
     let (here, rest) = here.as_chunks::<8>();
     let (there, others) = there.as_chunks::<8>();
@@ -349,7 +350,7 @@ fn distance(here: &[f32], there: &[f32]) -> f64 {
     sums.into_iter().map(f64::from).sum::<f64>() + rest.sum::<f64>()
 }
 
-/// Mean differences at each distance.
+/// Mean absolute difference of all blocks at each lag.
 fn differences(stretches: &[Stretch]) -> Vec<f64> {
     let shortest = stretches.iter().map(|stretch| stretch.greys.len()).min().unwrap_or_default();
     let longest = LONGEST_ROW.min(shortest / 2);

@@ -1,8 +1,8 @@
-//! How a file of bare voxels may be stored, by what its bytes are like.
+//! Detection of the layout of raw files, by statistics of their bytes.
 //!
-//! Neighbours in a volume are alike. In a wrong number type or byte order they jump; at a wrong distance, what is taken
-//! for the next row or slice is less like this one than what lies a voxel further on. A few thousand voxels at several
-//! places of the file tell, whatever its size; positions and lengths are in bytes of the file after inflating, distances
+//! Neighbouring voxels are similar. With a wrong number type or byte order they jump; at a wrong distance, the
+//! supposed next row or slice is less similar than one shifted by a voxel. A few thousand voxels at several places
+//! suffice, whatever the size of the file. Offsets and lengths are in bytes of the uncompressed file, distances
 //! between neighbours in voxels.
 
 mod codes;
@@ -26,16 +26,16 @@ pub(super) use numbers::each_value;
 use shapes::{Shape, Size};
 use spots::Spots;
 
-/// Proposals that are given, the likeliest first.
+/// Maximum number of proposals.
 const MOST: usize = 8;
 
-/// Number types that are looked at more closely: of those behind these, none is ever right.
+/// Number of interpretations that are examined more closely: those ranked lower are never right.
 const CODES: usize = 4;
 
-/// Number types that take so many times the bits of the best are not looked at.
+/// Maximum cost of an interpretation, relative to the best.
 const HOPELESS: f64 = 1.6;
 
-/// How a file may be stored, the likeliest first; nothing if the work was given up.
+/// Proposes layouts of a file, most likely first; empty if `stop` was set meanwhile.
 ///
 /// # Errors
 /// When the file cannot be read.
@@ -52,7 +52,7 @@ pub fn proposals(bytes: &mut RawBytes, said: Said, stop: &AtomicBool) -> io::Res
             return Ok(Vec::new());
         }
         let size = Size::of(bytes, code);
-        // Numbers that begin at odd places are believed where they are by far the best.
+        // Unaligned numbers count only where they are by far the best.
         if found.is_empty() || size.is_usual() {
             found.extend(of_code(bytes, &spots, code, said, stop)?);
         }
@@ -64,7 +64,7 @@ pub fn proposals(bytes: &mut RawBytes, said: Said, stop: &AtomicBool) -> io::Res
     Ok(found)
 }
 
-/// The likeliest shapes of a file of such numbers.
+/// Most likely shapes of a file for one interpretation.
 fn of_code(
     bytes: &mut RawBytes,
     spots: &Spots,

@@ -1,9 +1,9 @@
-//! The numbers of bytes, in any type and order.
+//! Decoding of bytes as numbers of any type and byte order.
 
 use crate::data::VoxelType;
 use crate::data::load::Endian;
 
-/// Does something with the numbers of bytes, in order, in a loop of its own for each type.
+/// Evaluates an expression with an iterator over the decoded numbers; compiles one loop for each type and byte order.
 macro_rules! with_numbers {
     ($bytes:expr, $voxel_type:expr, $endian:expr, $numbers:ident => $body:expr) => {{
         macro_rules! in_order {
@@ -36,7 +36,7 @@ macro_rules! with_numbers {
 
 pub(super) use with_numbers;
 
-/// Gives the numbers of bytes one after the other.
+/// Calls `give` with each number in turn.
 pub(in crate::data::load::formats::raw) fn each_value(
     bytes: &[u8],
     voxel_type: VoxelType,

@@ -1,4 +1,4 @@
-//! Rows, slices and headers that make up a file's length, and how well neighbours agree in them.
+//! Candidate shapes: rows, slices and headers that match a file's length, scored by the agreement of neighbours.
 
 use std::collections::HashMap;
 use std::io;
@@ -8,26 +8,25 @@ use super::super::said::Said;
 use super::codes::Code;
 use super::lags::{Dip, Lags, SHORTEST};
 
-/// Lengths of headers that formats and programs have: none, the smallest of MRC and others in use, Analyze and `NIfTI`,
-/// whole blocks of a disk.
+/// Lengths of headers in use, in bytes: none, the smallest of MRC and others, Analyze and `NIfTI`, whole disk blocks.
 pub(super) const HEADERS: [u64; 14] = [0, 16, 32, 64, 80, 128, 256, 348, 352, 512, 1024, 2048, 4096, 8192];
 
-/// The longest header that is guessed where voxels do not fill the file.
+/// Maximum length of a header that is guessed where voxels do not fill the file, in bytes.
 const LONGEST_HEADER: u64 = 64 << 10;
 
-/// The longest edge that is guessed.
+/// Maximum edge length that is guessed, in voxels.
 const LONGEST: usize = 1 << 16;
 
-/// Lengths of rows that are looked at more closely.
+/// Number of row lengths that are examined more closely.
 const ROWS: usize = 8;
 
-/// Rows that score so much less than the best are not looked at: slices that agree make up for no more.
+/// Maximum deficit of a row's score against the best: agreeing slices cannot make up for more.
 const HOPELESS: f64 = 1.2;
 
-/// Numbers of rows in a slice that are looked at for each length of rows.
+/// Number of slice heights that are examined for each row length.
 const SLICES: usize = 32;
 
-/// How long a file of numbers is.
+/// Length of a file of numbers of one interpretation.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Size {
     bytes: u64,
@@ -40,24 +39,24 @@ impl Size {
         Self { bytes: bytes.length(), voxel: code.voxel_type.bytes() as u64, phase: code.phase as u64 }
     }
 
-    /// How many voxels follow a header; none if it is no whole number of them.
+    /// Number of voxels after a header; `None` if it is not an integer.
     fn after(&self, header: u64) -> Option<u64> {
         let rest = self.bytes.checked_sub(header)?;
         (header % self.voxel == self.phase && rest.is_multiple_of(self.voxel)).then_some(rest / self.voxel)
     }
 
-    /// Whether headers of a usual length leave whole numbers of voxels.
+    /// Returns true if a header of usual length leaves an integer number of voxels.
     pub(super) fn is_usual(&self) -> bool {
         self.usual().next().is_some()
     }
 
-    /// Headers that leave whole numbers of voxels, with how many.
+    /// Usual headers that leave an integer number of voxels, with that number.
     fn usual(&self) -> impl Iterator<Item = (u64, u64)> {
         HEADERS.into_iter().filter_map(|header| Some((header, self.after(header)?)))
     }
 }
 
-/// A length of rows.
+/// Candidate length of rows, in voxels.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Row {
     length: usize,
@@ -65,12 +64,12 @@ pub(super) struct Row {
     score: f64,
 }
 
-/// A shape that is to be looked at.
+/// Candidate shape before its slices are scored.
 #[derive(Debug, Clone, Copy)]
 struct Tried {
     dims: [usize; 3],
     header: u64,
-    /// How likely it is before that.
+    /// Score of the shape alone, before its voxels are examined.
     prior: f64,
 }
 
@@ -80,7 +79,7 @@ impl Tried {
     }
 }
 
-/// A shape, and how well neighbours agree in it.
+/// Scored shape, with the agreement of neighbouring rows and slices.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shape {
     pub(super) dims: [usize; 3],
@@ -89,18 +88,18 @@ pub(super) struct Shape {
     pub(super) slice: Dip,
     /// Mean difference of neighbours along x.
     pub(super) across: f64,
-    /// Mean difference of voxels that have nothing to do with each other.
+    /// Mean difference of unrelated voxels.
     pub(super) unlike: f64,
     pub(super) score: f64,
 }
 
-/// How much a dip counts: its depth, as far as it is more than chance.
+/// Weight of a dip in the score: its depth, reduced where it may be chance.
 fn weight(dip: Dip) -> f64 {
-    // Four deviations leave nothing to chance, whatever the number of distances that were tried.
+    // Four standard deviations rule out chance, whatever the number of lags that were tried.
     dip.depth * (dip.sigmas / 4.0).clamp(0.0, 1.0)
 }
 
-/// How unusual an edge is.
+/// Penalty for an unusual edge length.
 fn odd(edge: usize) -> f64 {
     if edge.is_power_of_two() || edge.is_multiple_of(128) {
         0.0
@@ -113,14 +112,14 @@ fn odd(edge: usize) -> f64 {
     }
 }
 
-/// Lengths of rows, the likeliest first.
+/// Candidate row lengths, most likely first.
 pub(super) fn rows(size: &Size, lags: &Lags, said: Said) -> Vec<Row> {
     let differences = &lags.differences;
     let depth = |length: usize| {
         let around = 0.5 * (differences.get(length - 1)? + differences.get(length + 1)?);
         (around > 0.0).then(|| 1.0 - differences[length] / around)
     };
-    // By what the table says, and by what fits the length.
+    // By the autocorrelation, and by divisibility of the file's length.
     let mut promising: Vec<(usize, f64)> = (SHORTEST..differences.len().saturating_sub(1))
         .filter_map(|length| Some((length, depth(length)?)))
         .map(|(length, depth)| {
@@ -156,13 +155,13 @@ pub(super) fn rows(size: &Size, lags: &Lags, said: Said) -> Vec<Row> {
     rows
 }
 
-/// The edge of a cube of so many voxels.
+/// Edge of a cube of `voxels` voxels; `None` if there is none.
 fn cube(voxels: u64) -> Option<usize> {
     let edge = (voxels as f64).cbrt().round() as u64;
     (edge.checked_pow(3)? == voxels).then_some(edge as usize)
 }
 
-/// Numbers of rows in a slice, and of slices, for a length of rows.
+/// Scored shapes for a row length: numbers of rows in a slice, and of slices.
 pub(super) fn slices(
     bytes: &mut RawBytes,
     size: &Size,
@@ -192,7 +191,7 @@ pub(super) fn slices(
     tried.truncate(SLICES);
     tried.extend(left_over(size, agreeing, row.length, said));
     let mut shapes = Vec::new();
-    // Whatever comes before them, slices of so many rows agree as well.
+    // The agreement of slices depends only on their number of rows, not on the header.
     let mut known: HashMap<usize, Dip> = HashMap::new();
     for Tried { dims, header, prior } in tried {
         let slice = match known.get(&dims[1]) {
@@ -214,12 +213,12 @@ pub(super) fn slices(
     Ok(shapes)
 }
 
-/// A number divided by another that divides it.
+/// Exact quotient; `None` if there is a remainder.
 fn whole(n: u64, by: u64) -> Option<u64> {
     (by > 0 && n > 0 && n.is_multiple_of(by)).then(|| n / by)
 }
 
-/// Voxels of slices that agree, whatever the length of rows that they were found by.
+/// Lengths of slices, in voxels, at which neighbours agree, collected over all row lengths.
 pub(super) fn agreeing(lags: &Lags, rows: &[Row]) -> Vec<usize> {
     let of_row =
         |row: &Row| lags.slices(row.length).into_iter().map(|rows| rows * row.length).collect::<Vec<_>>();
@@ -229,7 +228,7 @@ pub(super) fn agreeing(lags: &Lags, rows: &[Row]) -> Vec<usize> {
     slices
 }
 
-/// Shapes of slices that agree, with a header of what is left over.
+/// Candidates by agreeing slices, where the remainder of the file's length is the header.
 fn left_over(size: &Size, agreeing: &[usize], row: usize, said: Said) -> Vec<Tried> {
     let of_slice = |&slice: &usize| {
         let slice_bytes = slice as u64 * size.voxel;
@@ -243,7 +242,7 @@ fn left_over(size: &Size, agreeing: &[usize], row: usize, said: Said) -> Vec<Tri
     fitting.filter_map(of_slice).collect()
 }
 
-/// How likely a shape is before its voxels are looked at.
+/// Score of a shape before its voxels are examined: plausible proportions, edges and header.
 fn prior(dims: [usize; 3], header: u64, said: Said) -> f64 {
     let [x, y, z] = dims.map(|n| n as f64);
     let longest = x.max(y).max(z);
@@ -260,7 +259,7 @@ fn prior(dims: [usize; 3], header: u64, said: Said) -> f64 {
         header if HEADERS.contains(&header) => 0.15,
         header => 0.2 + 0.05 * (1.0 + header as f64 / 256.0).ln(),
     };
-    // Fewer than 16 are seen as a slab, not as a volume.
+    // Fewer than 16 voxels along an axis are a slab rather than a volume.
     score -= dims.iter().map(|&edge| 0.15 * (16.0 / edge as f64).ln().max(0.0)).sum::<f64>();
     if said.dims == Some(dims) {
         score += 2.0;

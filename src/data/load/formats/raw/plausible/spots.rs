@@ -1,47 +1,46 @@
-//! Pieces of the file, where something is to be seen.
+//! Sample blocks of a raw file, chosen where the content varies.
 
 use std::io;
 
 use super::super::bytes::RawBytes;
 
-/// Places that are looked at.
+/// Number of places that are examined.
 const PLACES: u64 = 64;
 
-/// Bytes that are looked at in each place, to see whether anything is there.
+/// Bytes that are examined at each place, to see whether the content varies.
 const GLANCE: usize = 4 << 10;
 
-/// Places that are read: more than these tell nothing more.
+/// Maximum number of blocks that are read: more add no information.
 const SPOTS: usize = 16;
 
-/// Bytes of each: rows of 4096 voxels of 8 bytes, and as many neighbours beside each of them.
+/// Bytes of a block: rows of 4096 voxels of 8 bytes, with as many neighbours.
 const SPOT_BYTES: usize = 64 << 10;
 
-/// A piece of the file.
+/// Block of consecutive bytes of the file.
 #[derive(Debug)]
 pub(super) struct Spot {
-    /// Its first byte's place in the file.
+    /// Offset of its first byte in the file.
     pub(super) at: u64,
     pub(super) bytes: Vec<u8>,
 }
 
-/// Pieces of the file, in its order.
+/// Sample blocks in file order.
 #[derive(Debug)]
 pub(super) struct Spots(pub(super) Vec<Spot>);
 
 impl Spots {
-    /// Reads pieces from everywhere in a file, rather where its bytes change from one stretch to the next: padding says
-    /// nothing.
+    /// Reads blocks from all over a file, preferably where the content varies: padding carries no information.
     pub(super) fn read(bytes: &mut RawBytes) -> io::Result<Self> {
         let length = bytes.readable();
         let mut glances = Vec::new();
         let mut glance = vec![0; GLANCE];
         let room = length.saturating_sub(SPOT_BYTES as u64);
-        // Of a small file all is read, in pieces that overlap.
+        // A small file is read as a whole, in overlapping blocks.
         let places = PLACES.min(length.div_ceil(SPOT_BYTES as u64)).max(1);
         for place in 0..places {
             let at = match places {
                 1 => 0,
-                // From the first byte to the last, at odd places: steps must not fall into step with rows.
+                // From the first byte to the last, with irregular steps, so that they do not coincide with rows.
                 _ => (room * place / (places - 1)).saturating_sub(place % 7 * 61),
             };
             let middle = at + (SPOT_BYTES as u64).min(length) / 2;
@@ -62,8 +61,8 @@ impl Spots {
     }
 }
 
-/// How much the means of short stretches of bytes differ, apart from what noise does to them. The stretches are of 64
-/// bytes, a multiple of every number's size.
+/// Variance of the means of short runs of bytes, which noise hardly affects. Runs have 64 bytes, a multiple of every
+/// number's size.
 pub(super) fn unrest(bytes: &[u8]) -> f64 {
     let means: Vec<f64> = bytes
         .chunks_exact(64)

@@ -1,4 +1,5 @@
-//! Built-in volumes, written in every way, are found again; and noise is not taken for a volume.
+//! Tests that the layout of built-in volumes is detected however they are written, and that noise is not taken for a
+//! volume.
 
 use rayon::prelude::*;
 
@@ -9,7 +10,7 @@ use crate::data::load::Endian;
 use crate::data::load::formats::raw::RawLayout;
 use crate::data::synthetic::{NAMES, builtin};
 
-/// A way of writing a volume.
+/// Volume to write, and the layout to write it in.
 #[derive(Debug, Clone, Copy)]
 struct Case {
     name: &'static str,
@@ -19,16 +20,16 @@ struct Case {
     header: usize,
 }
 
-/// Shapes that have nothing in common.
+/// Grid shapes without common edges.
 const SHAPES: [[usize; 3]; 5] = [[96, 75, 70], [65, 90, 83], [80, 72, 98], [102, 102, 77], [105, 78, 83]];
 
-/// A header that nobody has.
+/// Length of a header that no format has, in bytes.
 const UNUSUAL: usize = 1000;
 
-/// No header, usual ones, and that.
+/// Lengths of headers: none, usual ones, and the unusual one.
 const HEADERS: [usize; 6] = [0, 352, 0, 512, 1024, UNUSUAL];
 
-/// Every built-in volume in every type, orders, headers and shapes in turn.
+/// Test cases: every built-in volume in every type, with byte orders, headers and shapes in turn.
 fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     for name in NAMES {
@@ -44,7 +45,7 @@ fn cases() -> Vec<Case> {
     cases
 }
 
-/// The bytes of the middle of a volume, with a little noise as of a measurement, behind a header of text.
+/// Writes the middle of a volume, with a little measurement noise, after a header of text.
 fn written(volume: &Volume, case: &Case) -> Vec<u8> {
     let mut bytes: Vec<u8> =
         b"# what follows are voxels\n".iter().copied().cycle().take(case.header).collect();
@@ -95,9 +96,9 @@ fn is_true(layout: &RawLayout, case: &Case) -> bool {
         && layout.offset == case.header as u64
 }
 
-/// Writes and finds cases, and checks how many are found.
+/// Writes volumes, detects their layouts, and checks how many are right.
 fn check(cases: Vec<Case>) {
-    // Each is as large as the shape wants it.
+    // Each volume is as large as its shape needs.
     let edges = SHAPES.map(|dims| dims.into_iter().max().unwrap_or_default());
     let volume = |name: &'static str, n: usize| (name, n, builtin(name, Some(n)).expect("a built-in volume"));
     let volumes: Vec<(&str, usize, Volume)> =
@@ -113,12 +114,12 @@ fn check(cases: Vec<Case>) {
             (case, place, found.first().is_some_and(|first| first.evidence.is_clear))
         })
         .collect();
-    // A header that nobody has can be a part of many shapes, and is guessed at.
+    // A header of unusual length can be part of many shapes, and is only guessed.
     let (usual, unusual): (Vec<_>, Vec<_>) = places.iter().partition(|(case, _, _)| case.header != UNUSUAL);
     let guessed = unusual.iter().filter(|(_, place, _)| *place == Some(0)).count();
     let missed: Vec<_> = usual.iter().filter(|(_, place, _)| place.is_none_or(|place| place > 2)).collect();
     let not_first: Vec<_> = usual.iter().filter(|(_, place, _)| *place != Some(0)).collect();
-    // What is claimed is right.
+    // Whatever is reported as clear must be right.
     let is_claimed = |(_, place, is_clear): &&(Case, Option<usize>, bool)| *is_clear && *place != Some(0);
     let wrong: Vec<_> = places.iter().filter(is_claimed).collect();
     let clear = places.iter().filter(|(_, _, is_clear)| *is_clear).count();
@@ -134,13 +135,13 @@ fn check(cases: Vec<Case>) {
     assert!(missed.is_empty(), "{summary}");
     assert!(not_first.len() * 20 <= usual.len(), "{summary}");
     assert!(guessed * 2 >= unusual.len(), "{summary}");
-    // Of two bytes with and without a sign that a mask has, one must be claimed.
+    // One of signed and unsigned 16-bit numbers must be reported for a mask, and either can be wrong.
     assert!(wrong.len() * 20 <= places.len(), "{summary}");
 }
 
 #[test]
 fn volumes_are_found_whatever_way_they_are_written() {
-    // Every third has each volume, type, order, header and shape somewhere.
+    // Every third case covers each volume, type, byte order, header and shape.
     check(cases().into_iter().step_by(3).collect());
 }
 
@@ -150,7 +151,7 @@ fn all_volumes_are_found_whatever_way_they_are_written() {
     check(cases());
 }
 
-/// Bytes that have nothing to do with each other.
+/// Pseudo-random bytes without any correlation.
 fn noise(count: usize, seed: u64) -> Vec<u8> {
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
     let mut next = || {
@@ -204,7 +205,7 @@ fn what_the_name_says_comes_first() {
 #[test]
 fn long_files_are_only_looked_into() {
     let file = tempfile::NamedTempFile::new().unwrap();
-    // Nothing is written: the system knows that it is empty.
+    // A sparse file: nothing is written.
     file.as_file().set_len(2048 * 2048 * 1024 * 2).unwrap();
     let mut bytes = RawBytes::open(file.path()).unwrap();
     assert_eq!((bytes.length(), bytes.is_exact(), bytes.is_held()), (8 << 30, true, false));
@@ -232,7 +233,7 @@ fn of_compressed_files_the_start_is_looked_at() {
     assert_eq!((bytes.length(), bytes.is_exact()), (48 * 40 * 36 * 2, true));
     let found = proposals(&mut bytes, Said::default(), &AtomicBool::new(false)).unwrap();
     assert!(is_true(&found[0].layout, &case), "{found:#?}");
-    // Longer than what is inflated: its end says how long it is.
+    // Longer than the part that is inflated: its trailer gives the length.
     let mut file = tempfile::NamedTempFile::new().unwrap();
     let mut encoder = flate2::write::GzEncoder::new(&mut file, flate2::Compression::fast());
     encoder.write_all(&vec![0; 40 << 20]).unwrap();
@@ -240,7 +241,7 @@ fn of_compressed_files_the_start_is_looked_at() {
     let bytes = RawBytes::open(file.path()).unwrap();
     assert_eq!((bytes.length(), bytes.is_exact()), (40 << 20, false));
     assert!(bytes.readable() < bytes.length());
-    // Also where zeros fill the file up.
+    // Also with zero padding.
     std::io::Write::write_all(&mut file, &[0; 4096]).unwrap();
     assert_eq!(RawBytes::open(file.path()).unwrap().length(), 40 << 20);
 }

@@ -1,4 +1,5 @@
-//! DAT: lines of keys and values, as Voreen and Inviwo write them, and before them programs of the University of Stuttgart.
+//! DAT, descriptions of raw files as lines of keys and values, written by Voreen and Inviwo, and before them by
+//! programs of the University of Stuttgart.
 
 use super::super::super::LoadError;
 use super::super::form::Form;
@@ -10,10 +11,10 @@ use crate::data::attempt::Attempt;
 /// Keys that name the file of voxels.
 const DATA: [&str; 2] = ["objectfilename", "rawfile"];
 
-/// Whether a file that begins like this is a description.
+/// Returns true if a file with this beginning is such a description.
 pub(super) fn is_dat(start: &[u8]) -> bool {
     let text = String::from_utf8_lossy(start);
-    // Voxels may hold any word, but no line of nothing else.
+    // Binary voxels may contain any word, but hardly a whole line of this form.
     lines(&text).iter().any(|(key, _)| DATA.contains(&key.as_str()))
 }
 
@@ -27,7 +28,7 @@ pub(super) fn parse(attempt: Attempt<'_>, text: &str) -> Result<Described, LoadE
     let (kind, mut components) =
         number(said).ok_or_else(|| bad(attempt, "Format", said, "a number type like UCHAR"))?;
     let mut form = Form::new(dims, "Resolution", kind);
-    // Voreen has the number of components in another line.
+    // Voreen gives the number of components in another line.
     if components == 1 {
         components = match find(&pairs, &["objectmodel"]).map(str::to_uppercase).as_deref() {
             Some("LA" | "RG") => 2,
@@ -54,7 +55,7 @@ pub(super) fn parse(attempt: Attempt<'_>, text: &str) -> Result<Described, LoadE
     let vectors = ["basisvector1", "basisvector2", "basisvector3"]
         .map(|key| find(&pairs, &[key]).and_then(three::<f64>));
     form.placement = match (spacing, vectors) {
-        // Edges of the whole in units of Inviwo's scenes: only how they compare is known.
+        // Edges of the whole volume in units of Inviwo's scene: only their ratios are known.
         (None, [Some(x), Some(y), Some(z)]) => {
             let edges = [x, y, z].map(|edge| glam::DVec3::from(edge).length());
             let steps = std::array::from_fn(|axis| edges[axis] / dims[axis].max(1) as f64);

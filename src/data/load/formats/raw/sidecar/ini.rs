@@ -1,5 +1,5 @@
-//! INI, the descriptions of Unity Volume Rendering (<https://github.com/mlavik1/UnityVolumeRendering>): `x.raw.ini` beside
-//! `x.raw`.
+//! INI, the descriptions of raw files by Unity Volume Rendering (<https://github.com/mlavik1/UnityVolumeRendering>):
+//! `x.raw.ini` beside `x.raw`.
 
 use super::super::super::LoadError;
 use super::super::form::Form;
@@ -7,7 +7,7 @@ use super::Described;
 use super::words::{bad, find, lines, missing, number, order};
 use crate::data::attempt::Attempt;
 
-/// Whether a file that begins like this is a description.
+/// Returns true if a file with this beginning is such a description.
 pub(super) fn is_ini(start: &[u8]) -> bool {
     let text = String::from_utf8_lossy(start);
     let pairs = lines(&text);

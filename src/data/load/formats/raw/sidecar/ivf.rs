@@ -1,4 +1,4 @@
-//! IVF, Inviwo's volumes: a description in XML.
+//! IVF, Inviwo's volumes: descriptions of raw files in XML.
 
 use roxmltree::Node;
 
@@ -10,7 +10,7 @@ use super::words::{bad, missing, number, order};
 use crate::data::attempt::Attempt;
 use crate::data::xml;
 
-/// Whether a file that begins like this is a description.
+/// Returns true if a file with this beginning is such a description.
 pub(super) fn is_ivf(start: &[u8]) -> bool {
     let text = String::from_utf8_lossy(start);
     text.trim_start_matches('\u{feff}').trim_start().starts_with('<') && text.contains("<RawFile")
@@ -38,7 +38,7 @@ pub(super) fn parse(attempt: Attempt<'_>, text: &str) -> Result<Described, LoadE
     if let Some(said) = content("LittleEndian").or_else(|| content("ByteOrder")) {
         form.endian = order(said).ok_or_else(|| bad(attempt, "LittleEndian", said, "1 or 0"))?;
     }
-    // Edges of the whole in units of Inviwo's scenes: only how they compare is known.
+    // Edges of the whole volume in units of Inviwo's scene: only their ratios are known.
     let edges = node("BasisAndOffset").map(|basis| {
         ["col0", "col1", "col2"].map(|name| {
             let column = basis.children().find(|node| node.has_tag_name(name));
@@ -53,7 +53,7 @@ pub(super) fn parse(attempt: Attempt<'_>, text: &str) -> Result<Described, LoadE
     Ok(Described { data: Some(data.to_owned()), form })
 }
 
-/// The attributes x, y and z.
+/// Parses the attributes x, y and z of an element.
 fn three<T: std::str::FromStr>(node: Node<'_, '_>) -> Option<[T; 3]> {
     let number = |name: &str| node.attribute(name)?.trim().parse().ok();
     Some([number("x")?, number("y")?, number("z")?])

@@ -1,4 +1,5 @@
-//! Small files that describe bare voxels in another file: read when they are opened, and when the voxels are.
+//! Companion files that describe raw voxels in another file; they are read when they are opened, and when the voxels
+//! are.
 
 mod dat;
 mod ini;
@@ -19,7 +20,7 @@ use crate::data::attempt::Attempt;
 
 pub(in crate::data::load) const DAT: Reader = Reader {
     name: "DAT",
-    // Also the ending of bare voxels: its content tells.
+    // The extension is also that of raw voxels: only the content decides.
     endings: &[],
     recognises: |start| dat::is_dat(start.stored()),
     load: |source| load(source, dat::parse),
@@ -39,19 +40,19 @@ pub(in crate::data::load) const INI: Reader = Reader {
     load: |source| load(source, ini::parse),
 };
 
-/// Whether a file that begins like this is a description of any kind.
+/// Returns true if a file with this beginning is a description of any kind.
 pub(super) fn is_description(start: &[u8]) -> bool {
     dat::is_dat(start) || ivf::is_ivf(start) || ini::is_ini(start)
 }
 
-/// The longest description that is read.
+/// Maximum length of a description, in bytes.
 const MOST_BYTES: u64 = 64 << 10;
 
 const WHAT: &str = "read the description of a RAW volume";
 
-/// What a description says.
+/// Parsed description of a raw file.
 struct Described {
-    /// The file of the voxels, where it is named.
+    /// Name of the file of voxels, where the description has one.
     data: Option<String>,
     form: Form,
 }
@@ -64,7 +65,7 @@ impl Described {
 
 type Parse = fn(Attempt<'_>, &str) -> Result<Described, LoadError>;
 
-/// Loads the volume that a description is of.
+/// Loads the volume that a description refers to.
 fn load(mut source: Source<'_>, parse: Parse) -> Result<Volume, LoadError> {
     let attempt = Attempt { what: WHAT, path: source.path };
     let text = text(attempt, &mut source.input)?;
@@ -84,7 +85,7 @@ fn load(mut source: Source<'_>, parse: Parse) -> Result<Volume, LoadError> {
     witness.vouch(attempt, form.read(source, attempt, name, "check the description against the data"))
 }
 
-/// The name of the file beside a description that names none: `x.raw` or `x` for `x.raw.ini`, `x.raw` for `x.ini`.
+/// Name of the data file for a description that names none: `x.raw` or `x` for `x.raw.ini`, `x.raw` for `x.ini`.
 fn unnamed(attempt: Attempt<'_>) -> Result<String, LoadError> {
     let stem = attempt.path.file_stem().unwrap_or_default().to_string_lossy();
     let candidates = ["", ".raw", ".dat", ".raw.gz", ".bin"].map(|ending| format!("{stem}{ending}"));
@@ -98,8 +99,8 @@ fn unnamed(attempt: Attempt<'_>) -> Result<String, LoadError> {
     })
 }
 
-/// What a description beside a file of voxels says of it, or why it is not understood. Of those that name a file only those
-/// count that name this one.
+/// Finds and parses the description beside a file of voxels; the error tells why one cannot be parsed. Descriptions
+/// that name another file are ignored.
 pub(super) fn beside(data: &Path) -> Option<Result<Form, LoadError>> {
     candidates(data).into_iter().find_map(|path| {
         let attempt = Attempt { what: WHAT, path: &path };
@@ -126,7 +127,7 @@ pub(super) fn beside(data: &Path) -> Option<Result<Form, LoadError>> {
     })
 }
 
-/// Where the description of a file may be: under its name with another ending, or with one more.
+/// Possible paths of a file's description: its name with another extension, or with an additional one.
 fn candidates(data: &Path) -> Vec<PathBuf> {
     let name = data.file_name().unwrap_or_default().to_os_string();
     let is_zipped = data.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gz"));
@@ -142,7 +143,7 @@ fn candidates(data: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// The text of a description.
+/// Reads the text of a description.
 fn text(attempt: Attempt<'_>, input: &mut Input) -> Result<String, LoadError> {
     use std::io::Read as _;
     let mut bytes = Vec::new();

@@ -1,4 +1,5 @@
-//! Descriptions beside bare voxels: opened themselves, found beside, contradicted, and lying.
+//! Tests of companion files that describe raw voxels: opened themselves, found beside the data, contradicted by
+//! options, and with false contents.
 
 use std::path::PathBuf;
 
@@ -22,7 +23,7 @@ const IVF: &str = "<?xml version=\"1.0\" ?>\n<InviwoVolume version=\"2\">\n<RawF
 struct Folder(TempDir);
 
 impl Folder {
-    /// A folder with twelve bytes as voxels.
+    /// Creates a folder with a file of twelve bytes as voxels.
     fn new(data: &str) -> Self {
         let folder = Self(TempDir::new().unwrap());
         folder.write(data, (0..12).collect::<Vec<u8>>());
@@ -134,7 +135,7 @@ fn descriptions_of_other_files_do_not_count() {
     let raw = RawFormat { dims: Some([3, 2, 2]), voxel_type: Some(VoxelType::U8), ..RawFormat::default() };
     let said = LoadOptions { raw, ..plain() };
     assert_eq!(folder.load("foot_12x1x1_uint8.raw", said).unwrap().dims(), [3, 2, 2]);
-    // Bare voxels may be called .dat as well.
+    // Raw voxels may have the extension .dat as well.
     let folder = Folder::new("sim_2x3x2_uint8.dat");
     assert_eq!(folder.load("sim_2x3x2_uint8.dat", plain()).unwrap().dims(), [2, 3, 2]);
 }
@@ -180,14 +181,14 @@ fn descriptions_that_lie_are_refused() {
 #[test]
 fn xml_that_would_take_long_is_refused() {
     let folder = Folder::new("foot.raw");
-    // As much as a description may have, with what makes it one for who looks at its beginning alone.
+    // As long as a description may be, with a beginning that is recognised as one.
     let namespaces = nested_namespaces("InviwoVolume", 1500);
     let attributes = many_attributes("InviwoVolume", 7000).replacen('<', "<?x <!-- <RawFile ?><", 1);
     folder.write("a.ivf", format!("<!-- <RawFile -->{namespaces}"));
     let error = folder.load("a.ivf", plain()).unwrap_err();
     assert_eq!(error.kind(), LoadErrorKind::BadInput);
     assert!(error.to_string().contains("1501 namespaces"), "{error}");
-    // These take 0.1 s.
+    // Parsing these takes 0.1 s.
     folder.write("a.ivf", attributes);
     assert!(folder.load("a.ivf", plain()).unwrap_err().to_string().contains("RawFile"));
 }

@@ -1,4 +1,4 @@
-//! Words that descriptions have in common: lines of keys and values, names of types and orders, distances.
+//! Parsing that the descriptions share: lines of keys and values, names of types and byte orders, spacings.
 
 use super::super::super::number::Number;
 use super::super::super::placement::Placement;
@@ -7,17 +7,17 @@ use crate::data::attempt::{Attempt, quoted};
 
 const HELP: &str = "correct the description, or give --dims and --type with the file of voxels";
 
-/// A value that is not what it should be.
+/// Error for a value of unexpected form.
 pub(super) fn bad(attempt: Attempt<'_>, field: &str, found: &str, expected: &str) -> LoadError {
     attempt.bad_input(field, format!("{expected} was expected, {} was found", quoted(found)), HELP)
 }
 
-/// Something that is not there.
+/// Error for a missing key.
 pub(super) fn missing(attempt: Attempt<'_>, field: &str) -> LoadError {
     attempt.bad_input(field, "it does not say this", HELP)
 }
 
-/// Keys in lower case and values of lines `key: value` or `key = value`. Other lines, comments among them, say nothing.
+/// Parses lines `key: value` or `key = value`, with keys in lower case. Other lines and comments are ignored.
 pub(super) fn lines(text: &str) -> Vec<(String, &str)> {
     let pairs = text.lines().filter(|line| !line.trim_start().starts_with(['#', ';'])).filter_map(|line| {
         let (key, value) = line.split_once([':', '='])?;
@@ -26,20 +26,20 @@ pub(super) fn lines(text: &str) -> Vec<(String, &str)> {
     pairs.collect()
 }
 
-/// The first value with one of some keys that is not empty.
+/// First value that is not empty, by the order of the keys.
 pub(super) fn find<'a>(pairs: &[(String, &'a str)], keys: &[&str]) -> Option<&'a str> {
     keys.iter().find_map(|key| {
         pairs.iter().find(|(name, value)| name == key && !value.is_empty()).map(|(_, value)| *value)
     })
 }
 
-/// Three numbers of a value.
+/// Parses three numbers separated by white space.
 pub(super) fn three<T: std::str::FromStr>(value: &str) -> Option<[T; 3]> {
     let mut numbers = value.split_whitespace().map(|word| word.parse().ok());
     Some([numbers.next()??, numbers.next()??, numbers.next()??])
 }
 
-/// A number type and how many of them a voxel has: `UCHAR`, `Uint16`, `Vec3FLOAT32`.
+/// Parses a number type and its number of components: `UCHAR`, `Uint16`, `Vec3FLOAT32`.
 pub(super) fn number(word: &str) -> Option<(Number, usize)> {
     let word = word.trim().to_lowercase();
     let (components, kind) = match word.strip_prefix("vec") {
@@ -49,7 +49,7 @@ pub(super) fn number(word: &str) -> Option<(Number, usize)> {
     let number = match kind {
         "uchar" | "uint8" | "byte" | "ubyte" | "unsigned char" => Number::U8,
         "char" | "int8" | "schar" | "signed char" => Number::I8,
-        // The upper bits are empty.
+        // The upper four bits are unused.
         "ushort" | "uint16" | "ushort_12" | "uint12" | "unsigned short" => Number::U16,
         "short" | "int16" | "short_12" => Number::I16,
         "uint" | "uint32" | "unsigned int" => Number::U32,
@@ -64,7 +64,7 @@ pub(super) fn number(word: &str) -> Option<(Number, usize)> {
     Some((number, components))
 }
 
-/// A byte order in words.
+/// Parses the name of a byte order.
 pub(super) fn order(word: &str) -> Option<Endian> {
     match word.trim().to_lowercase().replace(['-', '_', ' '], "").as_str() {
         "littleendian" | "little" | "le" | "lsb" | "1" | "true" => Some(Endian::Little),
@@ -73,7 +73,8 @@ pub(super) fn order(word: &str) -> Option<Endian> {
     }
 }
 
-/// Distances without a unit, which are millimetres in practice: but for those that only compare, with 1 along x and y.
+/// Placement by spacings without a unit: millimetres in practice, except where x and y are 1, so that only ratios are
+/// meant.
 pub(super) fn placement(spacing: Option<[f64; 3]>) -> Placement {
     match spacing {
         None => Placement::unknown(),

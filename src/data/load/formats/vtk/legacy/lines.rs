@@ -1,4 +1,4 @@
-//! A file of lines with data between them, which are skipped.
+//! Line reader for files with data between the lines, which it can skip.
 
 use std::io::{self, BufRead, Cursor, Read};
 
@@ -6,10 +6,10 @@ use super::super::super::{LoadControl, LoadError};
 use super::super::image::broken;
 use crate::data::attempt::{Attempt, quoted};
 
-/// Longer lines are refused: VTK itself reads 256 bytes.
+/// Maximum length of a line, in bytes: VTK itself reads 256.
 const LONGEST_LINE_BYTES: u64 = 4096;
 
-/// Lines and what lies between them.
+/// Lines of a file, and the data between them.
 pub(super) struct Lines<'a> {
     attempt: Attempt<'a>,
     control: &'a LoadControl,
@@ -22,12 +22,12 @@ impl<'a> Lines<'a> {
         Self { attempt, control, reader }
     }
 
-    /// Where the next byte is.
+    /// Offset of the next byte in the content.
     pub(super) fn position(&self) -> u64 {
         self.reader.position
     }
 
-    /// The next line, without white space around it; `None` at the end of the file.
+    /// Reads the next line, without surrounding white space; `None` at the end of the file.
     pub(super) fn next(&mut self) -> Result<Option<String>, LoadError> {
         self.control.check()?;
         let mut line = Vec::new();
@@ -41,7 +41,7 @@ impl<'a> Lines<'a> {
         Ok((!line.is_empty()).then(|| text.trim().to_owned()))
     }
 
-    /// The next line that is not blank.
+    /// Reads the next line that is not blank.
     pub(super) fn next_filled(&mut self) -> Result<Option<String>, LoadError> {
         loop {
             match self.next()? {
@@ -51,7 +51,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// Whether a word comes next, in any case of letters.
+    /// Returns true if a word comes next, ignoring case; it is not consumed.
     pub(super) fn begins_with(&mut self, word: &str) -> Result<bool, LoadError> {
         let mut seen = Vec::new();
         let position = self.reader.position;
@@ -66,7 +66,7 @@ impl<'a> Lines<'a> {
         Ok(is_it)
     }
 
-    /// Skips bytes; whether there were as many.
+    /// Skips bytes; returns false if the file ends before that.
     pub(super) fn skip_bytes(&mut self, bytes: u64) -> Result<bool, LoadError> {
         let mut left = bytes;
         while left > 0 {
@@ -81,7 +81,7 @@ impl<'a> Lines<'a> {
         Ok(true)
     }
 
-    /// Skips words with white space between them; whether there were as many.
+    /// Skips words separated by white space; returns false if the file ends before that.
     pub(super) fn skip_words(&mut self, words: u64) -> Result<bool, LoadError> {
         let mut left = words;
         let mut is_within = false;
@@ -113,7 +113,7 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// A reader that knows where it is, and takes back what was looked at.
+/// Reader that counts its position, with a buffer for bytes that are put back.
 struct Counted<'a> {
     ahead: Cursor<Vec<u8>>,
     reader: Box<dyn BufRead + 'a>,

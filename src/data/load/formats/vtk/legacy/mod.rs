@@ -1,6 +1,7 @@
-//! The older form: lines of text, and values after those that announce them, as text or as big-endian bytes.
+//! VTK images in the legacy format: lines of text, each followed by the values that it announces, as text or as
+//! big-endian bytes.
 //!
-//! Whoever writes it says nowhere how long the values are in the file: they are skipped one after the other to find all.
+//! The format does not give the length of the values in the file: all are skipped in turn to find the arrays.
 
 mod lines;
 mod scan;
@@ -16,7 +17,7 @@ use crate::data::attempt::Attempt;
 use lines::Lines;
 use scan::{Place, Scan};
 
-/// Whether a file that begins like this is one.
+/// Returns true if a file with this beginning is legacy VTK.
 pub(super) fn is_legacy(start: &Start) -> bool {
     start.has(b"# vtk DataFile Version", 0)
 }
@@ -31,7 +32,7 @@ pub(super) fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
     let Place { start, are_shares } = chosen.array.place;
     let room = if source.start.is_gzip() { u64::MAX } else { source.input.len.saturating_sub(start) };
     let voxels = if is_text {
-        // A digit each and a space between.
+        // At least a digit and a space each.
         check_room(attempt, name, chosen.numbers(), room.div_ceil(2), "numbers")?;
         let text = content_from(attempt, &mut source, start)?;
         let mut numbers = if are_shares {

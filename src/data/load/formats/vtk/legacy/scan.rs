@@ -1,4 +1,4 @@
-//! What a file holds: its grid, and where the values of its arrays begin.
+//! Scan of a legacy VTK file: its grid, and the offsets of its arrays' values.
 
 use std::str::FromStr;
 
@@ -12,36 +12,36 @@ use super::lines::Lines;
 use crate::data::attempt::{Attempt, quoted};
 use crate::data::plain;
 
-/// Where the values of an array are.
+/// Location and form of an array's values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Place {
     pub(super) start: u64,
-    /// Whether bytes are written as numbers from 0 to 1.
+    /// True if bytes are written as fractions from 0 to 1.
     pub(super) are_shares: bool,
 }
 
-/// What a file holds.
+/// Contents of a file: title, encoding, grid and arrays.
 pub(super) struct Scan<'a> {
     attempt: Attempt<'a>,
     pub(super) title: String,
-    /// Whether values are text.
+    /// True if values are text, false if they are binary.
     pub(super) is_text: bool,
     pub(super) grid: Grid,
-    /// The arrays, by where their values begin.
+    /// Arrays found so far, with the offsets of their values.
     pub(super) arrays: Vec<Array<Place>>,
-    /// How many values arrays have now, and whether they are those of cells.
+    /// Current section: number of values per array, and true for cell data.
     section: Option<(u64, bool)>,
-    /// Whether the grid's size was said.
+    /// True once the dimensions have been given.
     has_dims: bool,
 }
 
-/// How an array is announced.
+/// Announcement of an array in a line.
 struct Announced {
     name: String,
-    /// `None` where such values are not read.
+    /// Number type; `None` where it is not supported.
     number: Option<Number>,
     components: u64,
-    /// Values with so many numbers each.
+    /// Number of tuples, each with one value per component.
     tuples: u64,
     bytes: u64,
     is_color: bool,
@@ -49,7 +49,8 @@ struct Announced {
 }
 
 impl Announced {
-    /// Values of a type with so many components, of so many tuples; `None` for a type that there is not, or too many.
+    /// Creates an announcement from a type, a number of components and a number of tuples; `None` for an unknown
+    /// type, or on overflow.
     fn of(name: String, kind: &str, [components, tuples]: [u64; 2]) -> Option<Self> {
         let (number, bits) = number(kind)?;
         let bytes = bits.checked_mul(tuples.checked_mul(components)?)?.div_ceil(8);
@@ -101,7 +102,8 @@ impl<'a> Scan<'a> {
         Ok(scan)
     }
 
-    /// Adds what a line says, and skips the values after it; false where nothing after it can be found.
+    /// Interprets a line, and skips the values after it; returns false where the rest of the file cannot be
+    /// interpreted.
     fn add(&mut self, line: &str, lines: &mut Lines<'_>) -> Result<bool, LoadError> {
         let words: Vec<_> = line.split_whitespace().collect();
         let keyword = words[0].to_uppercase();
@@ -140,13 +142,13 @@ impl<'a> Scan<'a> {
             "SCALARS" => {
                 let components = words.get(3).map_or(Some(1), |text| text.parse().ok());
                 let found = components.and_then(|components| announced(word(2), components));
-                // Programs other than VTK leave it out.
+                // Other writers than VTK omit this line.
                 if lines.begins_with("LOOKUP_TABLE")? {
                     lines.next()?;
                 }
                 found
             }
-            // VTK writes all bytes so, colours or not: as they are, or as numbers from 0 to 1.
+            // VTK writes all byte arrays like this, colours or not: as bytes, or as numbers from 0 to 1.
             "COLOR_SCALARS" => {
                 let found =
                     word(2).parse().ok().and_then(|components| announced("unsigned_char", components));
@@ -185,7 +187,7 @@ impl<'a> Scan<'a> {
         Ok(true)
     }
 
-    /// Begins the arrays of points or of cells.
+    /// Begins the section of point or cell data.
     fn begin(&mut self, keyword: &str, count: u64) -> Result<bool, LoadError> {
         let of_cells = keyword == "CELL_DATA";
         let expected = self.grid.count(of_cells);
@@ -202,7 +204,7 @@ impl<'a> Scan<'a> {
         Ok(true)
     }
 
-    /// Adds the arrays of a field: each with a line `name components tuples type`.
+    /// Adds the arrays of a field, each with a line `name components tuples type`.
     fn add_fields(&mut self, count: u64, lines: &mut Lines<'_>) -> Result<bool, LoadError> {
         let mut left = count;
         while left > 0 {
@@ -231,7 +233,7 @@ impl<'a> Scan<'a> {
         Ok(true)
     }
 
-    /// Adds an array, and skips its values; whether they are all there.
+    /// Adds an array, and skips its values; returns false if the file ends before that.
     fn add_array(&mut self, found: Announced, lines: &mut Lines<'_>) -> Result<bool, LoadError> {
         let Announced { name, number, components, tuples, bytes, is_color, are_shares } = found;
         let of_cells = self.section.filter(|&(count, _)| count == tuples).map(|(_, of_cells)| of_cells);
@@ -249,7 +251,7 @@ impl<'a> Scan<'a> {
         }
     }
 
-    /// Stops at a line that is not understood, where there is something to show already.
+    /// Ends the scan at a line that is not understood; an error if no array was found before.
     fn stop(&self, line: &str) -> Result<bool, LoadError> {
         if self.arrays.is_empty() {
             let why = format!("the line {} is not understood", quoted(line));
@@ -260,7 +262,7 @@ impl<'a> Scan<'a> {
     }
 }
 
-/// The numbers after a keyword.
+/// Parses the numbers after a keyword.
 fn numbers<T: FromStr, const N: usize>(
     attempt: Attempt<'_>,
     keyword: &str,
@@ -273,7 +275,7 @@ fn numbers<T: FromStr, const N: usize>(
     })
 }
 
-/// Skips what is said of an array, up to an empty line.
+/// Skips the metadata of an array, up to an empty line.
 fn skip_metadata(lines: &mut Lines<'_>) -> Result<bool, LoadError> {
     while let Some(line) = lines.next()? {
         if line.is_empty() {
@@ -283,7 +285,7 @@ fn skip_metadata(lines: &mut Lines<'_>) -> Result<bool, LoadError> {
     Ok(false)
 }
 
-/// The number type that a word stands for, where such values are read, and the bits of one in the file.
+/// Parses the name of a number type: the type, where it is supported, and its bits in the file.
 fn number(word: &str) -> Option<(Option<Number>, u64)> {
     let number = match word.to_lowercase().as_str() {
         "bit" => return Some((None, 1)),
@@ -292,9 +294,9 @@ fn number(word: &str) -> Option<(Option<Number>, u64)> {
         "unsigned_short" => Number::U16,
         "short" => Number::I16,
         "unsigned_int" => Number::U32,
-        // Numbers of points and cells have 64 bits in VTK, and 32 in its files.
+        // Ids of points and cells have 64 bits in VTK, and 32 in its files.
         "int" | "vtkidtype" => Number::I32,
-        // As everywhere but on Windows.
+        // 64 bits, as everywhere but on Windows.
         "unsigned_long" | "unsigned_long_long" | "vtktypeuint64" => Number::U64,
         "long" | "long_long" | "vtktypeint64" => Number::I64,
         "float" => Number::F32,
@@ -304,7 +306,7 @@ fn number(word: &str) -> Option<(Option<Number>, u64)> {
     Some((Some(number), number.bytes() as u64 * 8))
 }
 
-/// A name, in which other bytes than letters and digits are written like `%20`.
+/// Decodes a name, in which special characters are written as `%20`.
 fn name(text: &str) -> String {
     let mut bytes = Vec::new();
     let mut rest = text.as_bytes();

@@ -1,4 +1,4 @@
-//! Files of the older form from the outside: what is read and what is refused.
+//! Tests that load legacy VTK files through the public interface: supported and refused ones.
 
 use std::io::Write as _;
 
@@ -22,7 +22,7 @@ fn load_bytes(bytes: &[u8]) -> Result<Volume, LoadError> {
     load_bytes_as(bytes, Choice::default())
 }
 
-/// A file of bytes: the head, and after it what is given.
+/// Builds a binary file: the header, followed by the given parts.
 fn binary(parts: &[&[u8]]) -> Vec<u8> {
     [HEAD.replace("ASCII", "BINARY").as_bytes(), &parts.concat()].concat()
 }

@@ -1,23 +1,23 @@
-//! Bytes from base64 (RFC 4648, section 4), strictly: nothing but its characters, white space between them, and whole
-//! groups of four.
+//! Base64 decoder (RFC 4648, section 4), strict: only its alphabet, white space, and complete groups of four are
+//! accepted.
 //!
-//! Pieces may follow each other: VTK writes a header of its own before the data, each with its padding.
+//! Encoded parts may follow each other: VTK encodes a header and the data separately, each with its padding.
 
 use std::io::{self, BufRead, Cursor, Read};
 
 use super::super::image::invalid;
 
-/// Reads what base64 text stands for.
+/// Reader that decodes base64 text.
 pub(super) struct Base64<R> {
     reader: R,
     ready: Cursor<Vec<u8>>,
-    /// The bits of the group so far, …
+    /// Bits of the current group so far.
     bits: u32,
-    /// … of how many characters they are, …
+    /// Number of characters in the current group.
     characters: u32,
-    /// … and how many of those were padding.
+    /// Number of padding characters in the current group.
     padding: u32,
-    /// What is wrong behind the bytes that are ready.
+    /// Error after the bytes that are ready.
     wrong: Option<String>,
 }
 
@@ -40,7 +40,7 @@ impl<R: BufRead> Base64<R> {
             }
             for &byte in &block {
                 if let Err(why) = self.add(byte) {
-                    // The bytes before it are good, and may be all that is wanted.
+                    // The bytes before it are valid, and may be all that is needed.
                     self.wrong = Some(why);
                     break;
                 }
@@ -91,7 +91,7 @@ impl<R: BufRead> Read for Base64<R> {
     }
 }
 
-/// The most bytes that so much text stands for.
+/// Upper bound of the decoded bytes of some text.
 pub(super) fn most_bytes(characters: u64) -> u64 {
     characters.div_ceil(4).saturating_mul(3)
 }

@@ -1,4 +1,5 @@
-//! Binary values: their length and then they, or a table of blocks and then those, each compressed by itself.
+//! Decoder of binary values in VTK XML files: a length and the data, or a table of blocks and the blocks, each
+//! compressed separately.
 
 use std::io::{self, Cursor, Read};
 
@@ -8,21 +9,21 @@ use flate2::read::ZlibDecoder;
 use super::super::super::Endian;
 use super::super::image::invalid;
 
-/// Blocks over this size are refused, since each is in memory three times, counting the volume: VTK's have 32 KiB unless
-/// told otherwise, but a file may have but one.
+/// Maximum size of a block, since each is in memory three times, counting the volume: VTK's blocks have 32 KiB by
+/// default, but a file may consist of a single one.
 const LARGEST_BLOCK_BYTES: u64 = 1 << 30;
 
-/// How blocks are compressed.
+/// Compression scheme of the blocks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Compressor {
     Zlib,
     Lz4,
 }
 
-/// The numbers before the data.
+/// Format of the header numbers before the data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Words {
-    /// Whether they have 64 bits, and not 32.
+    /// True for 64-bit numbers, false for 32-bit ones.
     pub(super) are_long: bool,
     pub(super) endian: Endian,
 }
@@ -35,7 +36,7 @@ impl Words {
             io::ErrorKind::UnexpectedEof => invalid("the data end within their header"),
             _ => error,
         })?;
-        // The highest byte first.
+        // Most significant byte first.
         if self.endian == Endian::Little {
             bytes.reverse();
         }
@@ -43,10 +44,10 @@ impl Words {
     }
 }
 
-/// Reads the length of uncompressed values that must be of `expected` bytes.
+/// Reads the length of uncompressed values, which must be `expected` bytes.
 pub(super) fn check_length(reader: &mut impl Read, words: Words, expected: u64) -> io::Result<()> {
     let length = words.read(reader)?;
-    // 32 bits cannot say more, and what is larger was written nevertheless.
+    // Writers truncate longer lengths to 32 bits.
     let is_cut =
         !words.are_long && expected > u64::from(u32::MAX) && length == expected & u64::from(u32::MAX);
     if length == expected || is_cut {
@@ -55,11 +56,11 @@ pub(super) fn check_length(reader: &mut impl Read, words: Words, expected: u64) 
     Err(invalid(format!("{expected} bytes were expected, the file announces {length}")))
 }
 
-/// Values in compressed blocks.
+/// Reader of values in compressed blocks.
 pub(super) struct Blocks<R> {
     reader: R,
     compressor: Compressor,
-    /// Sizes of the blocks that are still to come, the next one last.
+    /// Compressed sizes of the remaining blocks in reverse order, so that the next one is last.
     compressed: Vec<u64>,
     block_bytes: u64,
     last_bytes: u64,
@@ -68,7 +69,8 @@ pub(super) struct Blocks<R> {
 }
 
 impl<R: Read> Blocks<R> {
-    /// Reads the table of blocks that must make `expected` bytes, of which the file has room for `room`, where that is known.
+    /// Reads the table of blocks, which must expand to `expected` bytes; `room` is the number of bytes left in the
+    /// file, where it is known.
     pub(super) fn open(
         mut reader: R,
         words: Words,
@@ -79,7 +81,7 @@ impl<R: Read> Blocks<R> {
         let count = words.read(&mut reader)?;
         let block_bytes = words.read(&mut reader)?;
         let partial = words.read(&mut reader)?;
-        // Nothing left over means that the last block is whole.
+        // A partial size of 0 means that the last block is complete.
         let last_bytes = if partial == 0 { block_bytes } else { partial };
         let total = count
             .checked_sub(1)
@@ -96,14 +98,14 @@ impl<R: Read> Blocks<R> {
                 "its blocks of {block_bytes} bytes are larger than the {LARGEST_BLOCK_BYTES} that are read"
             )));
         }
-        // A table larger than the data is none that a program would write, unless there is next to nothing.
+        // A table larger than the data is implausible, except for very small data.
         if count.saturating_mul(8) > expected.max(1 << 16) {
             return Err(invalid(format!("its {count} blocks of {block_bytes} bytes are too small")));
         }
         let mut compressed = Vec::new();
         for _ in 0..count {
             let bytes = words.read(&mut reader)?;
-            // Neither method makes so much more of anything.
+            // Neither scheme expands incompressible data beyond this.
             if bytes > block_bytes.saturating_add(block_bytes / 8).saturating_add(1024) {
                 return Err(invalid(format!(
                     "a block of {block_bytes} bytes cannot have {bytes} when it is compressed"
@@ -123,15 +125,15 @@ impl<R: Read> Blocks<R> {
         Ok(Self { reader, compressor, compressed, block_bytes, last_bytes, packed, ready })
     }
 
-    /// Bytes that are in memory beside the volume: the longest block, and that unpacked.
+    /// Bytes in memory besides the volume: the longest compressed block, and an unpacked one.
     pub(super) fn needed_bytes(&self) -> u64 {
         let longest = self.compressed.iter().copied().max().unwrap_or(0);
-        // The last of several is no longer than they are.
+        // The last of several blocks is no longer than the others.
         let unpacked = if self.compressed.len() == 1 { self.last_bytes } else { self.block_bytes };
         longest.saturating_add(unpacked)
     }
 
-    /// Unpacks the next block.
+    /// Decompresses the next block.
     fn refill(&mut self) -> io::Result<()> {
         self.ready.set_position(0);
         let ready = self.ready.get_mut();
@@ -148,16 +150,16 @@ impl<R: Read> Blocks<R> {
         let unpacked = match self.compressor {
             Compressor::Zlib => {
                 ready.try_reserve_exact(wanted + 1).map_err(|_full| no_memory())?;
-                // A byte more than wanted tells too much from enough.
+                // One byte more than wanted distinguishes too much from enough.
                 let mut decoder = ZlibDecoder::new(&self.packed[..]).take(wanted as u64 + 1);
                 decoder.read_to_end(ready).map_err(|error| error.to_string())
             }
-            // A byte of a length stands for 255 others.
+            // A byte of an LZ4 length adds at most 255 bytes.
             Compressor::Lz4 if self.packed.len().saturating_mul(255) < wanted => {
                 Err(format!("{} bytes cannot make {wanted}", self.packed.len()))
             }
             Compressor::Lz4 => {
-                // Zeros take memory only as they are written: as much as the block really has.
+                // Zeroed pages are committed only as they are written: as much as the block really contains.
                 *ready = try_zeroed_vec(wanted).map_err(|()| no_memory())?;
                 lz4_flex::block::decompress_into(&self.packed, ready).map_err(|error| error.to_string())
             }

@@ -1,7 +1,7 @@
-//! The XML form: `<VTKFile type="ImageData">`.
+//! VTK images in XML: `<VTKFile type="ImageData">`.
 //!
-//! Values are numbers in text, or bytes in base64 or as they are; those lie in their elements, or together at the end of
-//! the file. Several pieces, as programs that run on many machines write them, are not put together.
+//! Values are numbers as text, or bytes, either in base64 or raw; they are inside their elements, or appended at the
+//! end of the file. Images of several pieces, as parallel programs write them, are not assembled.
 
 mod base64;
 mod blocks;
@@ -29,10 +29,10 @@ use base64::{Base64, most_bytes};
 use blocks::{Blocks, Compressor, Words, check_length};
 use skeleton::Skeleton;
 
-/// Arrays with which VTK marks what is missing or doubled; nobody wants to see them.
+/// Arrays with which VTK marks missing or duplicate points; they are not offered.
 const MARKS: [&str; 2] = ["vtkGhostType", "vtkValidPointMask"];
 
-/// Whether a file that begins like this is one of VTK's in XML.
+/// Returns true if a file with this beginning is VTK XML.
 pub(super) fn is_xml(start: &Start) -> bool {
     const MARK: &[u8] = b"<VTKFile";
     let bytes = start.bytes();
@@ -40,24 +40,24 @@ pub(super) fn is_xml(start: &Start) -> bool {
     bytes.starts_with(b"<") && bytes.windows(MARK.len()).any(|window| window == MARK)
 }
 
-/// How a file writes its values.
+/// Encoding of the values in a file.
 #[derive(Debug, Clone)]
 struct Style {
     words: Words,
-    /// Compressor of what is not text; the name of one that is not read is refused only where it has packed something.
+    /// Compressor of binary values; an unsupported one, by its name, is an error only where an array uses it.
     compressor: Option<Result<Compressor, String>>,
-    /// Whether what is appended is base64.
+    /// True if appended data are in base64.
     appends_text: bool,
 }
 
-/// Where the values of an array are.
+/// Location and encoding of an array's values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Place {
-    /// Numbers in text, at a byte of the file and so many.
+    /// Numbers as text: offset in the file and length, in bytes.
     Ascii(u64, u64),
-    /// Base64, likewise.
+    /// Base64: offset in the file and length, in bytes.
     Base64(u64, u64),
-    /// From a byte of what is appended on.
+    /// Appended data: offset within them, in bytes.
     Appended(u64),
 }
 
@@ -77,7 +77,7 @@ pub(super) fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
     chosen.volume(attempt, &grid, voxels, "")
 }
 
-/// The piece of the image.
+/// Finds the single piece of the image.
 fn image<'a, 'input>(attempt: Attempt<'_>, root: Node<'a, 'input>) -> Result<Node<'a, 'input>, LoadError> {
     let kind = root.attribute("type").unwrap_or_default();
     if root.tag_name().name() != "VTKFile" {
@@ -110,7 +110,7 @@ fn image<'a, 'input>(attempt: Attempt<'_>, root: Node<'a, 'input>) -> Result<Nod
     }
 }
 
-/// The grid of a piece: what it has of the whole image.
+/// Grid of a piece, which may be a part of the whole image.
 fn grid(attempt: Attempt<'_>, piece: Node<'_, '_>) -> Result<Grid, LoadError> {
     let image = piece.parent().unwrap_or(piece);
     let whole = image.attribute("WholeExtent");
@@ -145,13 +145,13 @@ fn grid(attempt: Attempt<'_>, piece: Node<'_, '_>) -> Result<Grid, LoadError> {
         grid.has_spacing = true;
     }
     if let Some(direction) = numbers("Direction", 9)? {
-        // Row by row.
+        // The file has the matrix row by row.
         grid.direction = DMat3::from_cols_slice(&direction).transpose();
     }
     Ok(grid)
 }
 
-/// How the file writes its values, by the attributes of its root.
+/// Encoding of the values, by the attributes of the root element.
 fn style(attempt: Attempt<'_>, root: Node<'_, '_>) -> Result<Style, LoadError> {
     let refused = |field: &str, text: &str, known: &str, help: &str| {
         Err(attempt.bad_input(field, format!("{known} is read, {} is not", quoted(text)), help))
@@ -183,7 +183,7 @@ fn style(attempt: Attempt<'_>, root: Node<'_, '_>) -> Result<Style, LoadError> {
     Ok(Style { words: Words { are_long, endian }, compressor, appends_text })
 }
 
-/// The arrays of numbers that have a value for each point or cell.
+/// Numeric arrays with a value for each point or cell.
 fn arrays(attempt: Attempt<'_>, piece: Node<'_, '_>, grid: &Grid) -> Result<Vec<Array<Place>>, LoadError> {
     let mut found = Vec::new();
     for (group, of_cells) in [("PointData", false), ("CellData", true)] {
@@ -209,7 +209,7 @@ fn arrays(attempt: Attempt<'_>, piece: Node<'_, '_>, grid: &Grid) -> Result<Vec<
                 continue;
             }
             let place = place(attempt, node)?;
-            // As VTK shows them when nothing else is said.
+            // VTK's default mapping: such arrays are colours.
             let is_color = number == Number::U8 && (3..=4).contains(&components);
             found.push(Array { name, number, components, of_cells, is_color, place });
         }
@@ -220,7 +220,7 @@ fn arrays(attempt: Attempt<'_>, piece: Node<'_, '_>, grid: &Grid) -> Result<Vec<
     Ok(found)
 }
 
-/// The number type that a word stands for.
+/// Parses the name of a number type.
 fn number(word: &str) -> Option<Number> {
     Some(match word {
         "Int8" => Number::I8,
@@ -237,9 +237,9 @@ fn number(word: &str) -> Option<Number> {
     })
 }
 
-/// Where the values of an element are.
+/// Location of the values of an element.
 fn place(attempt: Attempt<'_>, node: Node<'_, '_>) -> Result<Place, LoadError> {
-    // Skeleton has left two numbers in place of text; there is none where the element is empty.
+    // The skeleton has two numbers in place of text, and nothing for an empty element.
     let inline = || {
         let texts = node.children().filter_map(|child| child.text().filter(|_| child.is_text()));
         let mut places = texts.filter_map(|text| {
@@ -266,7 +266,7 @@ fn place(attempt: Attempt<'_>, node: Node<'_, '_>) -> Result<Place, LoadError> {
     }
 }
 
-/// Reads the values of the array that was chosen.
+/// Reads the values of the chosen array.
 fn read(
     attempt: Attempt<'_>,
     source: &mut Source<'_>,
@@ -278,11 +278,11 @@ fn read(
     let name = chosen.array.name.as_str();
     match chosen.array.place {
         Place::Ascii(start, length) => {
-            // A digit each and a space between.
+            // At least a digit and a space each.
             check_room(attempt, name, chosen.numbers(), length.div_ceil(2), "numbers")?;
             let text = content_from(attempt, source, start)?.take(length);
             let mut numbers = TextNumbers::new(text, chosen.array.number, chosen.numbers());
-            // Text has no byte order: the numbers were made little-endian.
+            // Text has no byte order: the adapter yields little-endian numbers.
             chosen.read(attempt, &mut numbers, Endian::Little, control)
         }
         Place::Base64(start, length) => {
@@ -313,8 +313,8 @@ fn read(
     }
 }
 
-/// Reads values in binary, where the file has room for so many bytes of them. The volume and a block of it may need
-/// `budget_bytes`.
+/// Reads binary values; `room` is the number of bytes left in the file, and `budget_bytes` the limit for the volume
+/// and one block.
 fn read_binary(
     attempt: Attempt<'_>,
     mut reader: impl Read,

@@ -1,7 +1,7 @@
-//! The markup of a file without what lies between the marks: that may be large, or raw bytes.
+//! Scanner that separates the markup of a VTK XML file from the data between tags, which may be large, or raw bytes.
 //!
-//! Each stretch of text is left out, and the two numbers that say where it was take its place. With raw bytes appended a
-//! file is no XML any more: nothing behind `<AppendedData>` and its `_` is looked at.
+//! Each stretch of text is replaced by two numbers: its offset and its length. With raw appended data a file is no
+//! longer valid XML: the scanner stops after `<AppendedData>` and its `_`.
 
 use std::io::{self, BufRead};
 
@@ -9,30 +9,30 @@ use super::super::super::{LoadControl, LoadError};
 use super::super::image::broken;
 use crate::data::attempt::Attempt;
 
-/// Longer markup is refused: an array needs some 200 bytes of it.
+/// Maximum length of the markup, in bytes: an array needs some 200.
 const LONGEST_MARKUP_BYTES: usize = 1 << 20;
 
-/// Deeper markup is refused: arrays lie five deep.
+/// Maximum nesting depth of elements: arrays are at depth five.
 const DEEPEST: usize = 64;
 
-/// The markup of a file.
+/// Markup of a file, without its data.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Skeleton {
-    /// Well-formed where the file is.
+    /// XML text, well-formed if the file is.
     pub(super) markup: String,
-    /// Where the appended data begin, behind the `_`.
+    /// Offset of the appended data, after the `_`.
     pub(super) appended: Option<u64>,
 }
 
-/// What is being read.
+/// State of the scanner between two bytes.
 enum State {
-    /// Text, and where it began to be more than white space.
+    /// Text, with the offset of its first byte that is not white space.
     Text(Option<u64>),
-    /// A tag, and the quote that ends the value of an attribute.
+    /// Tag, with the quote that ends the current attribute value.
     Tag(Option<u8>),
-    /// A comment with its last two bytes.
+    /// Comment, with its last two bytes.
     Comment([u8; 2]),
-    /// What comes between the tag of the appended data and their `_`.
+    /// White space between the tag of the appended data and their `_`.
     Appended,
 }
 
@@ -75,7 +75,7 @@ struct Scan {
 }
 
 impl Scan {
-    /// Adds a block that begins at a position of the content.
+    /// Scans a block that begins at a position of the content.
     fn add(&mut self, attempt: Attempt<'_>, block: &[u8], position: u64) -> Result<(), LoadError> {
         let mut at = 0;
         while let Some(&byte) = block.get(at) {
@@ -92,7 +92,7 @@ impl Scan {
                         self.state = State::Tag(None);
                     } else if start.is_some() || !byte.is_ascii_whitespace() {
                         start.get_or_insert(here);
-                        // The rest of a long stretch at once.
+                        // Skips the rest of a long stretch at once.
                         let rest = &block[at..];
                         at += rest.iter().position(|&byte| byte == b'<').unwrap_or(rest.len());
                     }
@@ -162,9 +162,9 @@ impl Scan {
         Ok(())
     }
 
-    /// Adds the tag, and escapes what VTK forgets to escape in names: an `&` that begins no reference.
+    /// Appends the tag, and escapes an `&` that begins no reference, which VTK fails to do in names.
     fn add_tag(&mut self) {
-        // Longer names of characters do not occur.
+        // Longer references do not occur.
         const LONGEST_REFERENCE: usize = 10;
         for (at, &byte) in self.tag.iter().enumerate() {
             self.markup.push(byte);
@@ -189,7 +189,7 @@ mod tests {
 
     fn read(text: &[u8]) -> Result<Skeleton, LoadError> {
         let attempt = Attempt { what: "test", path: Path::new("t") };
-        // A small buffer, so that everything is cut somewhere.
+        // A small buffer, so that every token is split somewhere.
         let mut reader = io::BufReader::with_capacity(5, text);
         Skeleton::read(attempt, &mut reader, &LoadControl::new())
     }

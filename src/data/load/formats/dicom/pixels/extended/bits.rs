@@ -1,25 +1,25 @@
-//! The stream of a scan (T.81 section F.2.2), from bytes to coefficients by their steps.
+//! Entropy-coded scan data of JPEG (T.81 section F.2.2): from bytes to dequantised coefficients.
 
 use super::{Block, CUT, Part};
 
-/// Places of coefficients in a block, in the order of a stream (T.81 figure A.6).
+/// Zigzag order of the coefficients of a block (T.81 figure A.6).
 const ZIGZAG: [u8; 64] = [
     0, 1, 8, 16, 9, 2, 3, 10, 17, 24, 32, 25, 18, 11, 4, 5, 12, 19, 26, 33, 40, 48, 41, 34, 27, 20, 13, 6, 7,
     14, 21, 28, 35, 42, 49, 56, 57, 50, 43, 36, 29, 22, 15, 23, 30, 37, 44, 51, 58, 59, 52, 45, 38, 31, 39,
     46, 53, 60, 61, 54, 47, 55, 62, 63,
 ];
 
-/// Codes of 1 to 16 bits (T.81 annex C).
+/// Huffman table with codes of 1 to 16 bits (T.81 annex C).
 #[derive(Default)]
 pub(super) struct Codes<'a> {
-    /// For each length, the first word of 16 bits that begins with a longer code.
+    /// For each code length, the first 16-bit word that begins with a longer code.
     limits: [u32; 16],
-    /// What codes stand for, in their order.
+    /// Values of the codes, in order of the codes.
     values: &'a [u8],
 }
 
 impl<'a> Codes<'a> {
-    /// Codes of a table as it is stored, if there is room for them.
+    /// Builds the table from its stored form; `None` if its codes do not fit in 16 bits.
     pub(super) fn new(table: &'a [u8]) -> Option<Self> {
         let (counts, values) = table.split_first_chunk::<16>()?;
         let (mut limits, mut limit) = ([0; 16], 0);
@@ -31,18 +31,18 @@ impl<'a> Codes<'a> {
     }
 }
 
-/// A stream bit by bit, up to its next marker (T.81 section F.2.2.5).
+/// Bit reader of a scan, up to its next marker (T.81 section F.2.2.5).
 #[derive(Default)]
 pub(super) struct Bits<'a> {
     pub(super) rest: &'a [u8],
-    /// Bits that come next, the first of them highest, and 0 below them.
+    /// Buffered bits that come next, left-aligned, zeros below them.
     pub(super) held: u32,
-    /// How many are held.
+    /// Number of buffered bits, 0 to 32.
     pub(super) count: u32,
 }
 
 impl Bits<'_> {
-    /// The next 16 bits without taking them, with 0 for those after the end.
+    /// Returns the next 16 bits without consuming them; zeros beyond the end.
     fn word(&mut self) -> u32 {
         while self.count < 16 {
             let (byte, after) = match self.rest {
@@ -57,17 +57,17 @@ impl Bits<'_> {
         self.held >> 16
     }
 
-    /// Takes the marker that comes next, after bits that fill up a byte (T.81 section B.1.1.2).
+    /// Consumes the next marker, after the bits that pad a byte (T.81 section B.1.1.2).
     pub(super) fn marker(&mut self) -> Option<u8> {
         let after = self.rest.strip_prefix(&[0xff]).filter(|_| self.count < 8)?;
-        // It may begin with any number of that byte.
+        // Any number of fill bytes 0xff may precede a marker.
         let at = after.iter().position(|&byte| byte != 0xff)?;
         let (&marker, rest) = after.get(at..)?.split_first()?;
         *self = Self { rest, ..Self::default() };
         Some(marker)
     }
 
-    /// Takes up to 16 bits.
+    /// Consumes up to 16 bits.
     fn take(&mut self, count: u8) -> Result<u32, String> {
         let bits = self.word() >> (16 - count);
         self.count = self.count.checked_sub(count.into()).ok_or(CUT)?;
@@ -75,7 +75,7 @@ impl Bits<'_> {
         Ok(bits)
     }
 
-    /// Takes a code; what it stands for (T.81 section F.2.2.3).
+    /// Decodes the value of the next Huffman code (T.81 section F.2.2.3).
     fn value(&mut self, codes: &Codes<'_>) -> Result<u8, String> {
         let word = self.word();
         let (mut start, mut before) = (0, 0);
@@ -91,14 +91,14 @@ impl Bits<'_> {
         Err("a code is in no table".to_owned())
     }
 
-    /// Takes a number of up to 15 bits (T.81 sections F.2.2.1 and F.2.2.4).
+    /// Decodes a signed number of up to 15 bits (T.81 sections F.2.2.1 and F.2.2.4).
     fn number(&mut self, size: u8) -> Result<i32, String> {
         let (number, end) = (self.take(size)? as i32, 1 << size);
-        // The lower half stands for what is negative.
+        // The lower half of the range stands for negative numbers.
         Ok(if number < end / 2 { number + 1 - end } else { number })
     }
 
-    /// Takes a block (T.81 section F.2.2): its coefficients, row by row.
+    /// Decodes a block (T.81 section F.2.2): dequantised coefficients, row by row.
     pub(super) fn block(&mut self, part: &mut Part<'_>) -> Result<Block, String> {
         let mut block = [[0.0; 8]; 8];
         let mut places = ZIGZAG.iter().zip(&part.steps);
@@ -108,12 +108,12 @@ impl Bits<'_> {
             Some(place)
         };
         let [means, others] = &part.codes;
-        // Means have up to 15 bits, other coefficients up to 14 (T.81 section F.1.5).
+        // Differences of DC coefficients have up to 15 bits, AC coefficients up to 14 (T.81 section F.1.5).
         let size = self.value(means)?;
         let size = Some(size).filter(|&size| size <= 15).ok_or("a mean has more than 15 bits")?;
         part.mean = part.mean.saturating_add(self.number(size)?);
         let mut last = put(0, part.mean);
-        // Both orders end at the same place.
+        // The last coefficient is at 63 in zigzag and in row order.
         while last.ok_or("a coefficient is outside of its block")? < 63 {
             let value = self.value(others)?;
             last = match (value >> 4, value & 15) {

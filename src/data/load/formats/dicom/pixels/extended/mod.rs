@@ -1,5 +1,5 @@
-//! Sequential JPEG with loss, of 8 or 12 bits (ITU-T T.81, Huffman codes: SOF0 and SOF1), from a
-//! stream that is trusted in nothing to numbers from 0 to 2^bits - 1; colours stay as they are.
+//! Sequential lossy JPEG of 8 or 12 bits (ITU-T T.81, Huffman coding: SOF0 and SOF1), from an untrusted stream to
+//! numbers from 0 to 2^bits − 1; colours are not converted.
 
 mod bits;
 
@@ -8,35 +8,35 @@ use std::f64::consts::{PI, SQRT_2};
 
 use bits::{Bits, Codes};
 
-/// Numbers of a block, row by row (T.81 section A.1.3).
+/// Block of 8 x 8 numbers, row by row (T.81 section A.1.3).
 type Block = [[f64; 8]; 8];
 
-/// What is said of a picture that ends before it is whole.
+/// Error message for an image that ends before it is complete.
 const CUT: &str = "the picture is cut off, or broken before its last block";
 
-/// What a stream says of its picture: pixels, numbers of each (1 to 4) and their bits (8 or 12).
+/// Frame header of an image: size in pixels, components (1 to 4) and bits per component (8 or 12).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Header {
     pub(super) width: usize,
     pub(super) height: usize,
     pub(super) components: usize,
     pub(super) bits: u32,
-    /// Whether it is extended (SOF1), not baseline (SOF0).
+    /// True for extended (SOF1), false for baseline (SOF0).
     pub(super) is_extended: bool,
 }
 
-/// A picture without compression.
+/// Decoded image with its size and samples.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Picture {
     pub(super) width: usize,
     pub(super) height: usize,
     pub(super) components: usize,
     pub(super) bits: u32,
-    /// Row by row, those of a pixel side by side.
+    /// Samples row by row, the components of a pixel adjacent.
     pub(super) numbers: Vec<u16>,
 }
 
-/// Reads a stream up to the size of its picture, or says what is wrong with it.
+/// Parses a stream up to its frame header, or returns a message that tells what is wrong with it.
 pub(super) fn header(packed: &[u8]) -> Result<Header, String> {
     let mut decoder = Decoder::new(packed)?;
     while decoder.header.width == 0 {
@@ -45,7 +45,7 @@ pub(super) fn header(packed: &[u8]) -> Result<Header, String> {
     Ok(decoder.header)
 }
 
-/// Decodes a picture, or says what is wrong with it; room is made for all that `header` says.
+/// Decodes an image, or returns a message that tells what is wrong with it; allocates the size that `header` states.
 pub(super) fn decode(packed: &[u8]) -> Result<Picture, String> {
     let mut decoder = Decoder::new(packed)?;
     while decoder.header.width == 0 || !decoder.parts.is_empty() {
@@ -55,48 +55,48 @@ pub(super) fn decode(packed: &[u8]) -> Result<Picture, String> {
     Ok(Picture { width, height, components, bits, numbers: decoder.numbers })
 }
 
-/// A component of the picture (T.81 section B.2.2).
+/// Component of the image (T.81 section B.2.2).
 #[derive(Default)]
 struct Part<'a> {
     id: u8,
-    /// Its place in a pixel.
+    /// Index of the component within a pixel.
     place: usize,
-    /// Samples across and down, in proportion to those of other components.
+    /// Sampling factors, horizontal and vertical.
     factors: [usize; 2],
-    /// Blocks across and down that have samples.
+    /// Number of blocks with samples, horizontally and vertically.
     blocks: [usize; 2],
-    /// Which table of steps is for it.
+    /// Index of the component's quantisation table.
     table: usize,
-    /// Steps of coefficients in the order of a stream, from its scan on.
+    /// Quantisation steps in zigzag order, set when its scan begins.
     steps: Vec<f64>,
-    /// Codes of means and of other coefficients, from its scan on.
+    /// Huffman tables of DC and AC coefficients, set when its scan begins.
     codes: [Codes<'a>; 2],
-    /// The mean of the block before, in steps.
+    /// DC coefficient of the previous block, in quantisation steps.
     mean: i32,
 }
 
-/// A stream that is being decoded.
+/// Decoder state of a stream.
 #[derive(Default)]
 struct Decoder<'a> {
     bits: Bits<'a>,
-    /// All 0 before it is read.
+    /// Frame header; all zero before it is read.
     header: Header,
-    /// Components that no scan had yet.
+    /// Components that no scan has contained yet.
     parts: Vec<Part<'a>>,
-    /// The largest factors across and down.
+    /// Maximum sampling factors, horizontal and vertical.
     most: [usize; 2],
-    /// Tables as they are stored: codes of means, codes of other coefficients, steps.
+    /// Tables as stored, by destination: DC Huffman, AC Huffman, quantisation.
     tables: [[&'a [u8]; 4]; 3],
-    /// Units between restarts, or 0.
+    /// Restart interval in minimum coded units (MCUs), or 0.
     interval: usize,
     numbers: Vec<u16>,
-    /// Cosines by frequency and place (T.81 section A.3.3), 1 for frequency 0, so that whole
-    /// numbers stay whole; sums over both axes are 8 times too large.
+    /// DCT basis by frequency and position (T.81 section A.3.3), scaled to 1 for frequency 0, so that integers stay
+    /// exact; two-dimensional sums are 8 times too large.
     waves: Block,
 }
 
 impl<'a> Decoder<'a> {
-    /// Begins after the marker at the start of all streams.
+    /// Starts a decoder behind the SOI marker.
     fn new(packed: &'a [u8]) -> Result<Self, String> {
         let rest = packed.strip_prefix(b"\xff\xd8").ok_or("no picture of JPEG begins there")?;
         let wave = |u, x| (f64::from((2 * x + 1) * u) * PI / 16.0).cos();
@@ -105,12 +105,12 @@ impl<'a> Decoder<'a> {
         Ok(Self { bits: Bits { rest, ..Bits::default() }, waves, ..Self::default() })
     }
 
-    /// Reads a marker with its segment, and the scan after it if there is one (T.81 table B.1).
+    /// Reads a marker with its segment, and the scan behind it if there is one (T.81 table B.1).
     fn read_segment(&mut self) -> Result<(), String> {
         let marker = self.bits.marker().ok_or(CUT)?;
         let length = self.bits.rest.first_chunk().map_or(0, |&length| u16::from_be_bytes(length));
         let (segment, rest) = self.bits.rest.split_at_checked(length.into()).ok_or(CUT)?;
-        // The length counts its own two bytes.
+        // The length includes its own two bytes.
         let body = segment.get(2..).ok_or(CUT)?;
         self.bits.rest = rest;
         match marker {
@@ -124,13 +124,13 @@ impl<'a> Decoder<'a> {
             0xda => self.read_scan(body)?,
             0xdc => Err("JPEG whose height follows a scan is not read")?,
             0xdd => self.interval = u16::from_be_bytes(*body.first_chunk().ok_or(CUT)?).into(),
-            0xe0..=0xfe => {} // What programs add.
+            0xe0..=0xfe => {} // Application segments and comments.
             _ => Err(CUT)?,
         }
         Ok(())
     }
 
-    /// Finds tables of codes or steps (T.81 sections B.2.4.1 and B.2.4.2).
+    /// Stores Huffman or quantisation tables (T.81 sections B.2.4.1 and B.2.4.2).
     fn read_tables(&mut self, marker: u8, mut body: &'a [u8]) -> Option<()> {
         while let [kind, after @ ..] = body {
             let (kind, place) = (usize::from(kind >> 4), usize::from(kind & 15));
@@ -147,7 +147,7 @@ impl<'a> Decoder<'a> {
         Some(())
     }
 
-    /// Reads the size of the picture and its components (T.81 section B.2.2).
+    /// Parses the frame header: size and components (T.81 section B.2.2).
     fn read_frame(&mut self, marker: u8, body: &[u8]) -> Result<(), String> {
         let &[bits, y1, y0, x1, x0, count, ref named @ ..] = body else { Err(CUT)? };
         let [width, height] = [[x1, x0], [y1, y0]].map(|two| usize::from(u16::from_be_bytes(two)));
@@ -161,7 +161,7 @@ impl<'a> Decoder<'a> {
         }
         let [x, y] = factors.clone().fold([1, 1], |[x, y], [h, v]| [h.max(x), v.max(y)]);
         for (place, (&[id, _, table], [h, v])) in named.iter().zip(factors).enumerate() {
-            // T.81 section A.1.1.
+            // Dimensions of the component (T.81 section A.1.1).
             let samples = [(width * h).div_ceil(x), (height * v).div_ceil(y)];
             let blocks = samples.map(|samples| samples.div_ceil(8));
             let (factors, table) = ([h, v], table.into());
@@ -173,12 +173,12 @@ impl<'a> Decoder<'a> {
         Ok(())
     }
 
-    /// Makes room for the numbers, if what is left of the stream can hold them.
+    /// Allocates the samples, if the rest of the stream can encode them.
     fn make_room(&mut self) -> Result<(), String> {
         let Header { width, height, components, .. } = self.header;
         let blocks: usize = self.parts.iter().map(|part| part.blocks[0] * part.blocks[1]).sum();
         let count = (width * height).saturating_mul(components);
-        // A byte holds 4 blocks at most: each has a code for its mean and one for the rest.
+        // A byte encodes at most 4 blocks: each has a DC code and at least one AC code.
         let is_held = blocks.div_ceil(4) <= self.bits.rest.len();
         if !is_held || self.numbers.try_reserve_exact(count - self.numbers.len()).is_err() {
             return Err(format!("{width} x {height} pixels are cut off, or too many here"));
@@ -187,9 +187,9 @@ impl<'a> Decoder<'a> {
         Ok(())
     }
 
-    /// Takes the components of a scan, and finds their tables (T.81 section B.2.3).
+    /// Removes the components of a scan from the pending ones, and resolves their tables (T.81 section B.2.3).
     fn take_parts(&mut self, body: &[u8]) -> Option<Vec<Part<'a>>> {
-        // The last three are the same in all sequential scans, and some writers have them wrong.
+        // The last three bytes are constant in sequential scans, and some programs write them wrong.
         let [count, named @ .., _, _, _] = body else { return None };
         let [means, others, steps] = self.tables;
         let parts = named.as_chunks().0.iter().map(|&[id, both]| {
@@ -199,7 +199,7 @@ impl<'a> Decoder<'a> {
             let others = Codes::new(others.get(usize::from(both & 15))?)?;
             let table = steps.get(part.table).filter(|table| !table.is_empty())?;
             let read = |step: &[u8]| step.iter().fold(0, |high, &low| (high << 8) | u16::from(low));
-            // One or two bytes for each.
+            // Steps have one or two bytes each.
             let steps = table.chunks(table.len().div_ceil(64)).map(|step| read(step).into());
             Some(Part { steps: steps.collect(), codes: [means, others], ..part })
         });
@@ -214,7 +214,7 @@ impl<'a> Decoder<'a> {
         let mut parts = parts.ok_or("a scan lacks a table, or has not the right components")?;
         let ([x, y], Header { width, height, .. }) = (self.most, self.header);
         let [across, down] = match &parts[..] {
-            // Alone, it has no blocks that only fill up.
+            // A scan of a single component has no padding blocks.
             [part] => part.blocks,
             _ => [width.div_ceil(8 * x), height.div_ceil(8 * y)],
         };
@@ -240,11 +240,11 @@ impl<'a> Decoder<'a> {
         Ok(())
     }
 
-    /// Puts a block into the picture, each sample into all pixels that it stands for.
+    /// Writes a block to the image, each sample to all pixels that it covers.
     fn put(&mut self, part: &Part<'_>, [x, y]: [usize; 2], block: &Block) {
         let Header { width, height, components, bits, is_extended: _ } = self.header;
         let ([h, v], [most_h, most_v]) = (part.factors, self.most);
-        // Without a sign (T.81 section A.3.1), and half of one more so that cutting rounds.
+        // Level shift (T.81 section A.3.1), plus one half so that truncation rounds.
         let middle = (1 << (bits - 1)) as f64 + 0.5;
         let most = ((1 << bits) - 1) as f64;
         let sums = turned(&turned(block, &self.waves), &self.waves);
@@ -263,7 +263,7 @@ impl<'a> Decoder<'a> {
     }
 }
 
-/// Sums of waves, whose heights stand in columns: a transform along columns, which become rows.
+/// 1-D inverse DCT along columns, transposing the block.
 fn turned(heights: &Block, waves: &Block) -> Block {
     let mut sums = [[0.0; 8]; 8];
     for (heights, wave) in heights.iter().zip(waves) {

@@ -1,14 +1,14 @@
-//! Pictures that the tests encode themselves.
+//! Tests of lossy JPEG, with images that a minimal encoder here writes.
 
 use super::*;
 
-/// A segment with its marker.
+/// Encodes a segment with its marker.
 fn segment(marker: u8, body: &[u8]) -> Vec<u8> {
     let length = u16::try_from(body.len() + 2).unwrap().to_be_bytes();
     [&[0xff, marker], &length[..], body].concat()
 }
 
-/// The segment of a picture of so many bits, pixels and factors; each component has table 0.
+/// Encodes a frame header of these bits, pixels and sampling factors; each component uses table 0.
 fn frame(marker: u8, bits: u8, [x, y]: [u16; 2], factors: &[u8]) -> Vec<u8> {
     let ([y1, y0], [x1, x0]) = (y.to_be_bytes(), x.to_be_bytes());
     let mut body = vec![bits, y1, y0, x1, x0, factors.len() as u8];
@@ -16,7 +16,7 @@ fn frame(marker: u8, bits: u8, [x, y]: [u16; 2], factors: &[u8]) -> Vec<u8> {
     segment(marker, &body)
 }
 
-/// Tables: all steps are 2, sizes of means have codes of 5 bits, others codes of 8 bits.
+/// Encodes tables: all quantisation steps are 2, DC codes have 5 bits, AC codes 8 bits.
 fn tables() -> Vec<u8> {
     let means = [&[0; 5], &[16][..], &[0; 11], &(0..16).collect::<Vec<_>>()].concat();
     let others = [&[0x10][..], &[0; 7], &[255], &[0; 8], &(0..255).collect::<Vec<_>>()].concat();
@@ -28,7 +28,7 @@ fn tables() -> Vec<u8> {
     .concat()
 }
 
-/// A scan of blocks, each of a difference of means and of pairs of zeros and coefficients.
+/// Encodes a scan of blocks, each a DC difference and pairs of zero run and AC coefficient.
 fn scan(ids: &[u8], blocks: &[(i32, &[(u8, i32)])]) -> Vec<u8> {
     let mut bits = String::new();
     let mut put = |zeros: u8, number: i32, width: usize| {
@@ -65,14 +65,14 @@ fn stream(parts: &[Vec<u8>]) -> Vec<u8> {
     [b"\xff\xd8", &parts.concat()[..], b"\xff\xd9"].concat()
 }
 
-/// A picture of one component, 13 x 9 pixels, of four blocks.
+/// An image of one component, 13 x 9 pixels, in four blocks.
 fn grey() -> Vec<u8> {
     let blocks: [(i32, &[_]); 4] =
         [(100, &[(0, 40)]), (-300, &[]), (8000, &[(14, -3), (15, 0), (3, 7)]), (-15000, &[])];
     stream(&[tables(), frame(0xc1, 12, [13, 9], &[0x22]), scan(&[1], &blocks)])
 }
 
-/// A picture of three components, 20 x 9 pixels, the first of which has twice the samples across.
+/// An image of three components, 20 x 9 pixels, the first of which has twice the horizontal samples.
 fn colors() -> Vec<u8> {
     let interval = segment(0xdd, &[0, 1]);
     let one = |mean| -> (i32, &[(u8, i32)]) { (mean, &[]) };
@@ -106,7 +106,7 @@ fn waves_stand_on_means() {
         match (at % 13, at / 13) {
             (x @ 0..8, 0..8) => assert_eq!(number, expected(x), "{at}"),
             (_, 0..8) => assert_eq!(number, 2048 - 50),
-            // 7800 steps, with small waves on them.
+            // 7800 steps, with small AC terms added.
             (0..8, _) => assert!(number.abs_diff(2048 + 1950) < 8, "{number}"),
             _ => assert_eq!(number, 2048 - 1800),
         }
@@ -165,7 +165,7 @@ fn what_is_not_sequential_is_refused() {
 fn damage_is_refused_or_read() {
     for good in [grey(), colors()] {
         let whole = decode(&good).unwrap();
-        // The last marker is not needed, but each byte before it is.
+        // The EOI marker is optional, but each byte before it is needed.
         for end in 0..good.len() - 2 {
             assert!(decode(&good[..end]).is_err(), "{end}");
         }

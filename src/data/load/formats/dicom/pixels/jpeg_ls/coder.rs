@@ -1,19 +1,20 @@
-//! The numbers of one scan of JPEG-LS (ITU-T T.87 annex A).
+//! Entropy decoder of one JPEG-LS scan (ITU-T T.87 annex A).
 
 use std::array::from_fn;
 use std::mem::replace;
 
 use super::{ENDS, Header, Picture, Stream};
 
-/// Contexts of T.87 A.3.4, from 365 on the two after runs; a power of two, so that all indices fit.
+/// Number of contexts (T.87 A.3.4), rounded up to a power of two so that all indices fit; from 365 on the two of run
+/// interruption.
 const CONTEXTS: usize = 512;
-/// How many bits say the length of a run (J of T.87 A.2.1).
+/// Number of bits that encode a run length (J of T.87 A.2.1), by run index.
 const RUNS: [u32; 32] =
     [0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
-/// What decodes a scan (T.87 annex A); names are as there.
+/// Decoder of a scan (T.87 annex A), with the names used there.
 pub(super) struct Coder {
-    /// Of a pixel, those of other scans too.
+    /// Number of components of a pixel, including those of other scans.
     components: usize,
     maxval: i32,
     near: i32,
@@ -21,15 +22,15 @@ pub(super) struct Coder {
     qbpp: u32,
     limit: u32,
     reset: i32,
-    /// NEAR + 1, T1, T2 and T3.
+    /// Gradient thresholds: NEAR + 1, T1, T2 and T3.
     bounds: [i32; 4],
-    /// A, B (after runs: Nn), C and N.
+    /// Context counters A, B (after runs: Nn), C and N.
     contexts: [[i32; 4]; CONTEXTS],
     bits: Bits,
 }
 
-/// Components that share a run: where they are within a pixel, their place in [`RUNS`], and what
-/// was to the left of the line before.
+/// Components that share a run: their offsets within a pixel, their index into [`RUNS`], and the left neighbours of
+/// the previous line's first pixel.
 type Group<const N: usize> = ([usize; N], usize, [i32; N]);
 
 impl Coder {
@@ -38,7 +39,7 @@ impl Coder {
         let or = |given, usual| if given == 0 { usual } else { given };
         let ([maxval, t1, t2, t3, reset], near) = (presets.map(i32::from), i32::from(near));
         let (maxval, reset) = (or(maxval, (1 << bits) - 1), or(reset, 64));
-        // T.87 C.2.4.1.1.1.
+        // Default thresholds (T.87 C.2.4.1.1.1).
         let (few, many) = (256 / (maxval + 1), (maxval.min(4095) + 128) / 256);
         let mut last = near + 1;
         let usual = [(3, 2, 3), (7, 3, 5), (21, 4, 7)].map(|(basic, least, nears)| {
@@ -48,7 +49,7 @@ impl Coder {
             last
         });
         let bounds = [near + 1, or(t1, usual[0]), or(t2, usual[1]), or(t3, usual[2])];
-        // T.87 tables C.2 and C.3.
+        // Valid ranges (T.87 tables C.2 and C.3).
         let are_right = bounds.is_sorted() && bounds[3] <= maxval && near <= maxval / 2;
         if !are_right || maxval >= 1 << bits || !(3..=maxval.max(255)).contains(&reset) {
             return Err("its parameters are out of range");
@@ -60,7 +61,7 @@ impl Coder {
         Ok(Self { components, maxval, near, range, qbpp, limit, reset, bounds, contexts, bits })
     }
 
-    /// Decodes components, those of an array together; gives where the scan ends.
+    /// Decodes the components of a scan, those of one array together; returns the offset at which the scan ends.
     pub(super) fn scan<const N: usize>(
         mut self,
         stream: &Stream<'_>,
@@ -82,7 +83,7 @@ impl Coder {
         for y in 0..picture.height {
             let is_restart = y > 0 && y.checked_rem(restart) == Some(0);
             if is_restart {
-                // Restarts are numbered from D0 to D7 (T.81 B.2.1).
+                // Restart markers are numbered from D0 to D7 (T.81 B.2.1).
                 if packed.get(marker + 1) != Some(&(0xd0 + (y / restart - 1) as u8 % 8)) {
                     return Err("a restart is missing");
                 }
@@ -102,7 +103,7 @@ impl Coder {
         Ok(marker)
     }
 
-    /// Starts with what is known of nothing (T.87 A.2.1); gives where the next marker is.
+    /// Resets the contexts (T.87 A.2.1); returns the offset of the next marker.
     fn start(&mut self, packed: &[u8], at: usize) -> usize {
         self.contexts = [[2.max((self.range + 32) / 64), 0, 0, 1]; CONTEXTS];
         let rest = packed.get(at..).unwrap_or_default();
@@ -112,7 +113,7 @@ impl Coder {
         at + length
     }
 
-    /// Decodes a line of a group (T.87 A.3 to A.7).
+    /// Decodes a line of a component group (T.87 A.3 to A.7).
     fn line<const N: usize>(&mut self, above: &[u16], line: &mut [u16], group: &mut Group<N>) {
         let ((places, run, before), components) = (group, self.components);
         let mut b = from_fn(|i| above.get(places[i]).map_or(0, |&number| number.into()));
@@ -143,7 +144,7 @@ impl Coder {
         }
     }
 
-    /// The context of a pixel, or the opposite one below 0 (T.87 A.3).
+    /// Returns the context of a pixel, negative for the mirrored context (T.87 A.3).
     fn context(&self, a: i32, b: i32, c: i32, d: i32) -> i32 {
         let [high, middle, low] = [d - b, b - c, c - a].map(|gradient| {
             let size = gradient.abs();
@@ -152,7 +153,7 @@ impl Coder {
         81 * high + 9 * middle + low
     }
 
-    /// Decodes a number where it is not flat (T.87 A.4 to A.6).
+    /// Decodes a sample in regular mode, that is, outside of runs (T.87 A.4 to A.6).
     fn regular(&mut self, kind: i32, a: i32, b: i32, c: i32) -> i32 {
         let (sign, index) = (if kind < 0 { -1 } else { 1 }, kind.unsigned_abs() as usize % CONTEXTS);
         let [sum, bias, correction, n] = self.contexts[index];
@@ -170,14 +171,14 @@ impl Coder {
         self.number(expected.clamp(0, self.maxval), sign * difference)
     }
 
-    /// Decodes how long a run is, where so many pixels are left (T.87 A.7.1).
+    /// Decodes the length of a run, given the number of remaining pixels (T.87 A.7.1).
     fn run(&mut self, run: &mut usize, left: usize) -> usize {
         let mut length = 0;
         while length < left {
             let bits = RUNS[*run % RUNS.len()];
             if self.bits.take(1) == 0 {
                 length += self.bits.take(bits) as usize;
-                // The number that ends it is in the same line.
+                // The sample that interrupts a run must lie in the same line.
                 if length >= left {
                     self.bits.at = self.bits.end + 1;
                 }
@@ -189,7 +190,8 @@ impl Coder {
         length
     }
 
-    /// Decodes the number that ends a run (T.87 A.7.2): of many components, they are never alike.
+    /// Decodes the sample that interrupts a run (T.87 A.7.2); `RItype` is always 0 with several interleaved
+    /// components.
     fn after_run<const N: usize>(&mut self, run: usize, a: i32, b: i32) -> i32 {
         let like = i32::from(N == 1 && (a - b).abs() <= self.near);
         let index = (365 + like as usize) % CONTEXTS;
@@ -204,7 +206,7 @@ impl Coder {
         self.number(if like == 1 { a } else { b }, difference)
     }
 
-    /// Counts a difference (T.87 A.6.1, A.7.2).
+    /// Updates the counters of a context (T.87 A.6.1, A.7.2).
     fn learn(&mut self, index: usize, size: i32, difference: i32) -> &mut [i32; 4] {
         let context = &mut self.contexts[index % CONTEXTS];
         let [a, b, _, n] = context;
@@ -215,7 +217,7 @@ impl Coder {
         context
     }
 
-    /// The number that differs so from what was expected (T.87 A.4.4, A.4.5).
+    /// Reconstructs a sample from prediction and error, modulo the range (T.87 A.4.4, A.4.5).
     fn number(&self, expected: i32, difference: i32) -> i32 {
         let step = 2 * self.near + 1;
         let number = expected + difference * step;
@@ -223,7 +225,8 @@ impl Coder {
         (number + around * self.range * step).clamp(0, self.maxval)
     }
 
-    /// Takes a mapped difference, where so much is off the limit (T.87 A.5.3).
+    /// Decodes a mapped error in limited-length Golomb code, with parameter k = `low` and the limit reduced by `off`
+    /// (T.87 A.5.3).
     fn mapped(&mut self, low: u32, off: u32) -> i32 {
         let most = self.limit.saturating_sub(self.qbpp + 1 + off);
         let zeros = self.bits.peek().leading_zeros();
@@ -238,24 +241,24 @@ impl Coder {
     }
 }
 
-/// How many low bits differences have of which so many sum up so (T.87 A.5.1).
+/// Returns the Golomb parameter k for an error sum and its count: the smallest with `count << k >= sum` (T.87 A.5.1).
 fn low_bits(sum: i32, count: i32) -> u32 {
     let low = count.leading_zeros().saturating_sub(sum.leading_zeros());
     low + u32::from(count << low < sum)
 }
 
-/// What is between two markers.
+/// Bit reader of the data between two markers.
 #[derive(Default)]
 struct Bits {
-    /// As many as there are, then zeros.
+    /// Data without stuffed bits, followed by zeros.
     bytes: Vec<u8>,
     end: usize,
-    /// The next; beyond the end where something is wrong.
+    /// Index of the next bit; beyond `end` after an error.
     at: usize,
 }
 
 impl Bits {
-    /// Those of bytes that have but 7 each after FF (T.87 A.1).
+    /// Removes bit stuffing: a byte after FF holds only 7 bits (T.87 A.1).
     fn new(packed: &[u8]) -> Self {
         let (mut bytes, mut bits, mut count, mut last) = (Vec::new(), 0, 0, 0);
         for &byte in packed {
@@ -271,13 +274,13 @@ impl Bits {
         Self { bytes, end, at: 0 }
     }
 
-    /// At least 57 of the next, from the highest on.
+    /// Returns at least the next 57 bits, left-aligned, without consuming them.
     fn peek(&self) -> u64 {
         let eight = self.bytes.get(self.at / 8..).and_then(|rest| rest.first_chunk());
         eight.map_or(0, |&eight| u64::from_be_bytes(eight) << (self.at % 8))
     }
 
-    /// Takes up to 32.
+    /// Consumes up to 32 bits.
     fn take(&mut self, count: u32) -> u32 {
         let taken = self.peek() >> 1 >> (63 - count);
         self.at += count as usize;

@@ -1,10 +1,10 @@
-//! Pictures of JPEG-LS (ITU-T T.87), without loss or nearly so, of one to four components.
+//! JPEG-LS (ITU-T T.87), lossless or near-lossless, of one to four components.
 //!
-//! Hostile pictures: a line takes at least one bit of each component (of all of them together where
-//! pixels are coded whole), so a scan with fewer bits than lines is refused before it gets memory.
-//! A run may code a line of any width in that one bit, so no better bound exists: who decodes first
-//! compares [`header`] with the size that is wanted. Rows are added as their bits are found, so a
-//! short picture of a large size takes neither the memory nor the time of that size.
+//! Hostile images: a line takes at least one bit per component (or one for all of them if pixels are interleaved), so
+//! a scan with fewer bits than lines is refused before it gets memory. A run may encode a line of any width in that
+//! one bit, so no better bound exists: callers compare [`header`] with the expected size before they decode. Rows are
+//! appended as their bits are found, so a short image that claims a large size takes neither the memory nor the time
+//! of that size.
 
 mod coder;
 
@@ -12,19 +12,19 @@ use std::mem::take;
 
 use coder::Coder;
 
-/// What a picture says of itself.
+/// Frame header of an image: size, components, and bit depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Header {
     pub(super) width: usize,
     pub(super) height: usize,
-    /// Numbers of a pixel.
+    /// Number of components per pixel.
     pub(super) components: usize,
-    /// Of a number.
+    /// Number of bits per component.
     pub(super) bits: u32,
 }
 
-/// A picture as its [`Header`] says, with its numbers: row by row, the components of a pixel side
-/// by side, in the colours that were coded.
+/// Decoded image of the size in its [`Header`]: samples row by row, the components of a pixel adjacent, colours not
+/// converted.
 #[derive(Debug)]
 pub(super) struct Picture {
     pub(super) width: usize,
@@ -33,7 +33,7 @@ pub(super) struct Picture {
     pub(super) numbers: Vec<u16>,
 }
 
-/// Reads what a picture says of itself, up to the header of its frame (SOF55) and no further.
+/// Parses an image up to its frame header (SOF55), and no further.
 pub(super) fn header(packed: &[u8]) -> Result<Header, String> {
     packed.starts_with(&[0xff, 0xd8]).then_some(()).ok_or("it is not JPEG-LS")?;
     let mut stream = Stream { packed, at: 2, ..Stream::default() };
@@ -43,7 +43,7 @@ pub(super) fn header(packed: &[u8]) -> Result<Header, String> {
     Ok(stream.frame.ok_or(BROKEN)?)
 }
 
-/// Decodes a picture: all of it, or nothing.
+/// Decodes an image: all of it, or nothing.
 pub(super) fn decode(packed: &[u8]) -> Result<Picture, String> {
     let Header { width, height, components, bits: _ } = header(packed)?;
     let mut picture = Picture { width, height, components, numbers: Vec::new() };
@@ -52,7 +52,7 @@ pub(super) fn decode(packed: &[u8]) -> Result<Picture, String> {
     while missing.contains(&true) {
         let Some(segment) = stream.segment()? else { continue };
         let (coder, places, are_whole) = stream.scan(segment)?;
-        // One that comes twice would take time again and again.
+        // A component that occurs twice could take time again and again.
         if !places.iter().all(|&at| missing.get_mut(at).is_some_and(take)) {
             return Err(BROKEN.to_owned());
         }
@@ -66,27 +66,27 @@ pub(super) fn decode(packed: &[u8]) -> Result<Picture, String> {
     Ok(picture)
 }
 
-/// What is said where bits are missing, or are none that an encoder writes.
+/// Error message for missing bits, or bits that no encoder writes.
 const ENDS: &str = "it is broken, or ends before all of its pixels are there";
-/// What is said of a segment that is of a wrong length or in a wrong place.
+/// Error message for a segment of wrong length or in a wrong place.
 const BROKEN: &str = "its markers are broken";
 
-/// The markers of a picture, and what they have said so far (T.87 C.1).
+/// Marker parser of an image, with the parameters read so far (T.87 C.1).
 #[derive(Default)]
 struct Stream<'a> {
     packed: &'a [u8],
     at: usize,
     frame: Option<Header>,
-    /// How scans call the components of a pixel.
+    /// Component identifiers that scans refer to.
     names: Vec<u8>,
-    /// MAXVAL, T1, T2, T3 and RESET (T.87 C.2.4.1.1), 0 where they are as usual.
+    /// Preset parameters MAXVAL, T1, T2, T3 and RESET (T.87 C.2.4.1.1); 0 stands for the default.
     presets: [u16; 5],
-    /// Lines from one restart to the next (T.87 C.2.5), or 0.
+    /// Restart interval in lines (T.87 C.2.5), or 0.
     restart: usize,
 }
 
 impl<'a> Stream<'a> {
-    /// Reads one segment with its marker (T.81 B.1.1); gives it if it starts a scan.
+    /// Reads one segment with its marker (T.81 B.1.1); returns its data if it starts a scan.
     fn segment(&mut self) -> Result<Option<&'a [u8]>, &'static str> {
         let rest = self.packed.get(self.at..).unwrap_or_default();
         let fill = rest.iter().take_while(|&&byte| byte == 0xff).count();
@@ -110,9 +110,9 @@ impl<'a> Stream<'a> {
             (0xdd, _) if matches!(data.len(), 2..=4) => {
                 self.restart = data.iter().fold(0, |all, &byte| all << 8 | usize::from(byte));
             }
-            // By HP's encoder, to pack better; 0 is none.
+            // HP's colour transform, an encoder extension that improves compression; 0 means none.
             (0xe8, [b'm', b'r', b'f', b'x', 1..=255, ..]) => return Err("its colours are mixed"),
-            // Of applications, and comments.
+            // Application segments, and comments.
             (0xe0..=0xef | 0xfe, _) => {}
             (0xc0..=0xcf, _) => return Err("it is JPEG of another kind"),
             _ => return Err(BROKEN),
@@ -120,7 +120,7 @@ impl<'a> Stream<'a> {
         Ok(None)
     }
 
-    /// Reads the header of the frame (T.87 C.2.2).
+    /// Parses the frame header (T.87 C.2.2).
     fn read_frame(&mut self, data: &[u8]) -> Result<(), &'static str> {
         let &[bits, y1, y0, x1, x0, count, ref each @ ..] = data else { return Err(BROKEN) };
         let [width, height] = [[x1, x0], [y1, y0]].map(|two| u16::from_be_bytes(two).into());
@@ -137,8 +137,8 @@ impl<'a> Stream<'a> {
         }
     }
 
-    /// Understands the header of a scan (T.87 C.2.3): where its components are within a pixel, and
-    /// whether its pixels are coded whole.
+    /// Parses the header of a scan (T.87 C.2.3): a decoder, the offsets of its components within a pixel, and true if
+    /// pixels are interleaved by sample.
     fn scan(&self, data: &[u8]) -> Result<(Coder, Vec<usize>, bool), &'static str> {
         let (&count, rest) = data.split_first().ok_or(BROKEN)?;
         let (pairs, rest) = rest.split_at_checked(2 * usize::from(count)).ok_or(BROKEN)?;

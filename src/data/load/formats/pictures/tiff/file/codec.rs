@@ -1,4 +1,4 @@
-//! The compressions of TIFF: from the bytes of a strip or tile to those that were compressed.
+//! Decoders of the TIFF compression schemes, for the bytes of a strip or tile.
 
 use std::io::Read;
 
@@ -10,7 +10,7 @@ use super::zstd;
 use crate::data::load::LoadControl;
 use crate::data::load::reading::samples::{BLOCK_BYTES, Fault, fill};
 
-/// How the bytes of a part are compressed.
+/// Compression scheme of a strip or tile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Codec {
     None,
@@ -22,7 +22,7 @@ pub(super) enum Codec {
 }
 
 impl Codec {
-    /// By the number that the tag "Compression" has.
+    /// Returns the scheme by its number in the tag "Compression".
     pub(super) fn of(compression: u64) -> Option<Self> {
         Some(match compression {
             1 => Self::None,
@@ -31,33 +31,33 @@ impl Codec {
             8 | 32946 => Self::Deflate,
             32773 => Self::PackBits,
             50000 => Self::Zstd,
-            // With an older number where the picture is whole.
+            // 6 is the older number, which is supported where each picture is complete.
             6 | 7 => Self::Jpeg,
             _ => return None,
         })
     }
 
-    /// The most bytes that so many compressed ones can stand for.
+    /// Upper bound of the uncompressed size of `packed` bytes.
     pub(super) fn most(self, packed: u64) -> u64 {
         let times = match self {
             Self::None => 1,
-            // A code of at least 9 bits stands for one of 4096 strings, each a byte longer than another.
+            // A code of at least 9 bits expands to one of 4096 strings, each one byte longer than another.
             Self::Lzw => 4096,
-            // 258 bytes by two codes of a bit each, as zlib's authors say: <https://zlib.net/zlib_tech.html>.
+            // 258 bytes from two codes of one bit each, after the authors of zlib: <https://zlib.net/zlib_tech.html>.
             Self::Deflate => 1032,
-            // 128 bytes by two.
+            // 128 bytes from two.
             Self::PackBits => 64,
-            // A block of 128 KiB of the same byte takes four (RFC 8878, 3.1.1.2).
+            // A block of 128 KiB of one repeated byte takes four bytes (RFC 8878, 3.1.1.2).
             Self::Zstd => 32 << 10,
-            // A block of 64 pixels takes a bit at least, and may stand for four times as many of each of three numbers, of
-            // which it is one of six.
+            // A block takes at least one bit. With 4:2:0 subsampling six blocks decode to 256 pixels of three
+            // components, 128 bytes per bit.
             Self::Jpeg => 1024,
         };
         packed.saturating_mul(times)
     }
 
-    /// Fills `out` as far as the compressed bytes go; how far that is. What would come after is not looked at. What the
-    /// page says of a `picture` counts where it is one.
+    /// Decompresses into `out` until it is full or the input ends; returns the number of bytes. Further input is
+    /// ignored. `picture` has the parameters of JPEG and Zstandard.
     pub(super) fn expand(
         self,
         packed: &[u8],
@@ -76,7 +76,8 @@ impl Codec {
     }
 }
 
-/// LZW as TIFF has it: the highest bits first, and codes that grow one early (TIFF 6.0, section 13).
+/// Decodes LZW in the TIFF variant: most significant bit first, with an early change of the code width (TIFF 6.0,
+/// section 13).
 fn expand_lzw(mut packed: &[u8], out: &mut [u8], control: &LoadControl) -> Result<usize, Fault> {
     let mut decoder = decode::Configuration::with_tiff_size_switch(BitOrder::Msb, 8)
         .with_yield_on_full_buffer(true)
@@ -97,10 +98,10 @@ fn expand_lzw(mut packed: &[u8], out: &mut [u8], control: &LoadControl) -> Resul
     Ok(filled)
 }
 
-/// Runs of bytes (TIFF 6.0, section 9).
+/// `PackBits` decoder: run-length encoding of bytes (TIFF 6.0, section 9).
 struct PackBits<'a> {
     packed: &'a [u8],
-    /// Bytes of the run that are still to come.
+    /// Bytes of the current run that are still to be read.
     left: usize,
     repeated: Option<u8>,
 }
@@ -111,7 +112,7 @@ impl Read for PackBits<'_> {
             let Some((&head, rest)) = self.packed.split_first() else { return Ok(0) };
             self.packed = rest;
             match head as i8 {
-                // Says nothing.
+                // No operation.
                 -128 => {}
                 count @ 0.. => (self.left, self.repeated) = (count as usize + 1, None),
                 count => {
@@ -148,7 +149,7 @@ mod tests {
 
     #[test]
     fn runs_are_repeated_and_others_taken() {
-        // The example of TIFF 6.0, page 42.
+        // Example of TIFF 6.0, page 42.
         let packed =
             [0xFE, 0xAA, 0x02, 0x80, 0x00, 0x2A, 0x80, 0xFD, 0xAA, 0x03, 0x80, 0x00, 0x2A, 0x22, 0xF7, 0xAA];
         let mut whole =
@@ -182,7 +183,7 @@ mod tests {
             assert!(rest.is_err() || rest.is_ok_and(|rest| rest.len() < 4000), "{codec:?}");
         }
         for codec in [Codec::Lzw, Codec::Deflate, Codec::PackBits, Codec::Zstd] {
-            // An error or few bytes: both end.
+            // An error, or few bytes: both terminate.
             let _either = expanded(codec, &bytes, 100_000);
             let _nothing = expanded(codec, &[], 10);
         }

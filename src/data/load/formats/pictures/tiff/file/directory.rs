@@ -1,4 +1,4 @@
-//! The directories of a TIFF file: what is said of each page, as numbered entries.
+//! Image file directories of a TIFF file: the metadata of each page, as numbered entries.
 
 use std::collections::HashSet;
 use std::io;
@@ -8,13 +8,13 @@ use super::bytes::{Bytes, whole};
 use crate::data::attempt::Attempt;
 use crate::data::load::{Endian, LoadControl, LoadError};
 
-/// Most pages that are looked at: a hundred times those of long recordings.
+/// Maximum number of pages: a hundred times those of long recordings.
 pub(in super::super) const MOST_PAGES: usize = 1 << 20;
 
-/// Most entries of a directory: real ones have some tens.
+/// Maximum number of entries of a directory: real ones have some tens.
 const MOST_ENTRIES: u64 = 4096;
 
-/// An entry of a directory: where its values stand.
+/// Entry of a directory: type, count and location of its values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in super::super) struct Entry {
     tag: u16,
@@ -24,7 +24,7 @@ pub(in super::super) struct Entry {
     at: u64,
 }
 
-/// Bytes of a value of a type; `None` where there is no such type.
+/// Size of a value by its type, in bytes; `None` for an unknown type.
 const fn bytes_of(kind: u16) -> Option<u64> {
     match kind {
         // BYTE, ASCII, SBYTE, UNDEFINED
@@ -33,14 +33,14 @@ const fn bytes_of(kind: u16) -> Option<u64> {
         3 | 8 => Some(2),
         // LONG, SLONG, FLOAT, IFD
         4 | 9 | 11 | 13 => Some(4),
-        // RATIONAL, SRATIONAL, DOUBLE, and of BigTIFF LONG8, SLONG8, IFD8
+        // RATIONAL, SRATIONAL, DOUBLE, and in BigTIFF LONG8, SLONG8, IFD8
         5 | 10 | 12 | 16 | 17 | 18 => Some(8),
         _ => None,
     }
 }
 
 impl Entry {
-    /// The bytes of its values, at most so many.
+    /// Reads the bytes of the values, at most `most`.
     fn bytes(self, file: &mut Bytes, most: u64) -> io::Result<Vec<u8>> {
         let size = bytes_of(self.kind).and_then(|size| size.checked_mul(self.count));
         let size = size.filter(|&size| size <= file.len()).ok_or(io::ErrorKind::UnexpectedEof)?;
@@ -49,7 +49,7 @@ impl Entry {
         Ok(bytes)
     }
 
-    /// Its values, where they are whole numbers and not below zero, at most so many of them.
+    /// Reads the values as non-negative integers, at most `most` of them.
     pub(in super::super) fn numbers(self, file: &mut Bytes, most: u64) -> io::Result<Vec<u64>> {
         let is_whole = matches!(self.kind, 1 | 3 | 4 | 13 | 16 | 18);
         let size = bytes_of(self.kind).filter(|_| is_whole).ok_or(io::ErrorKind::InvalidData)? as usize;
@@ -58,7 +58,7 @@ impl Entry {
         Ok(bytes.chunks_exact(size).map(|number| whole(number, endian)).collect())
     }
 
-    /// Its first value, as a number of any kind.
+    /// Reads the first value as a floating-point number, whatever its numeric type.
     pub(in super::super) fn first(self, file: &mut Bytes) -> Option<f64> {
         let endian = file.endian;
         let bytes = self.bytes(file, 8).ok()?;
@@ -75,13 +75,14 @@ impl Entry {
         })
     }
 
-    /// Its first value, where it is a whole number.
+    /// Reads the first value as an integer.
     pub(in super::super) fn whole(self, file: &mut Bytes) -> io::Result<u64> {
         let one = Self { count: self.count.min(1), ..self };
         one.numbers(file, 1)?.first().copied().ok_or_else(|| io::ErrorKind::InvalidData.into())
     }
 
-    /// Its text up to a zero byte, at most so many bytes of it. What is no UTF-8 is Latin-1, as older programs write it.
+    /// Reads the text up to a zero byte, at most `most` bytes. Text that is not UTF-8 is taken for Latin-1, as older
+    /// programs write it.
     pub(in super::super) fn text(self, file: &mut Bytes, most: u64) -> io::Result<String> {
         let mut bytes = self.bytes(file, most)?;
         bytes.truncate(bytes.iter().position(|&byte| byte == 0).unwrap_or(bytes.len()));
@@ -89,13 +90,13 @@ impl Entry {
             .unwrap_or_else(|error| error.as_bytes().iter().map(|&byte| char::from(byte)).collect()))
     }
 
-    /// Its bytes, at most so many, as they are.
+    /// Reads the raw bytes of the values, at most `most`.
     pub(in super::super) fn raw(self, file: &mut Bytes, most: u64) -> io::Result<Vec<u8>> {
         self.bytes(file, most)
     }
 }
 
-/// What is said of a page.
+/// Image file directory: the entries of a page.
 #[derive(Debug, Default)]
 pub(in super::super) struct Directory {
     entries: Vec<Entry>,
@@ -106,14 +107,14 @@ impl Directory {
         self.entries.iter().find(|entry| entry.tag == tag).copied()
     }
 
-    /// All entries of a tag that stands there more than once.
+    /// Returns all entries of a tag that may occur more than once.
     pub(in super::super) fn all(&self, tag: u16) -> impl Iterator<Item = Entry> {
         self.entries.iter().filter(move |entry| entry.tag == tag).copied()
     }
 
-    /// Reads the directory at a place, and where the next one is; 0 after the last.
+    /// Reads the directory at an offset, and the offset of the next one, which is 0 after the last.
     fn read(file: &mut Bytes, is_big: bool, at: u64) -> io::Result<(Self, u64)> {
-        // Bytes of the count of entries, of an entry, of a place in the file.
+        // Sizes of the entry count, of an entry and of an offset, in bytes.
         let (counted, size, place) = if is_big { (8, 20, 8) } else { (2, 12, 4) };
         let count = file.number(at, counted)?;
         if count > MOST_ENTRIES {
@@ -135,11 +136,11 @@ impl Directory {
     }
 }
 
-/// Goes through all directories of a file, in their order.
+/// Calls `each` with all directories of a file, in their order.
 ///
 /// # Errors
-/// `BadInput` for what is no TIFF file or whose list of pages leads nowhere, `Limit` for more pages than any recording has;
-/// what `each` says.
+/// `BadInput` for a file that is not TIFF or whose list of pages is corrupt, `Limit` for more pages than any
+/// recording has; errors of `each`.
 pub(in super::super) fn walk(
     attempt: Attempt<'_>,
     file: &mut Bytes,
@@ -151,7 +152,7 @@ pub(in super::super) fn walk(
     file.read(0, &mut magic).map_err(fault)?;
     file.endian = if magic == *b"MM" { Endian::Big } else { Endian::Little };
     let version = file.number(2, 2).map_err(fault)?;
-    // BigTIFF: version 43, places of 8 bytes, and a zero.
+    // BigTIFF: version 43, the size of an offset (8 bytes), and a zero.
     let is_big = version == 43;
     if is_big && file.number(4, 4).map_err(fault)? != if magic == *b"MM" { 8 << 16 } else { 8 } {
         return Err(unreadable(attempt, "header", io::ErrorKind::InvalidData.into()));

@@ -1,5 +1,5 @@
-//! JPEG in strips and tiles (ITU-R T.81, and TIFF Technical Note 2 of 1995): each is a picture of its own, whose tables may
-//! stand once for all of them in the directory of the page.
+//! JPEG in strips and tiles (ITU-R T.81, and TIFF Technical Note 2 of 1995): each is a picture of its own, whose
+//! tables may be stored once for all in the directory of the page.
 
 use std::io::{self, Read as _};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -8,31 +8,31 @@ use jpeg_decoder::{ColorTransform, Decoder, PixelFormat};
 
 use crate::data::load::reading::samples::Fault;
 
-/// How a stream begins, and how it ends.
+/// Markers at the beginning and end of a stream (SOI and EOI).
 const START: [u8; 2] = [0xff, 0xd8];
 const END: [u8; 2] = [0xff, 0xd9];
 
-/// What the page says of a strip or tile.
+/// Parameters of a strip or tile from the page's directory.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Picture<'a> {
-    /// A stream of nothing but tables; empty where each picture has its own.
+    /// Stream of tables only; empty where each picture has its own.
     pub(super) tables: &'a [u8],
-    /// Pixels across, and down; a last strip may have fewer rows.
+    /// Pixels across and down; a last strip may have fewer rows.
     pub(super) size: [u64; 2],
-    /// Bytes of it where no rows are missing.
+    /// Uncompressed bytes of a strip or tile with all its rows.
     pub(super) whole: usize,
-    /// Numbers of each pixel.
+    /// Number of samples per pixel.
     pub(super) samples: usize,
-    /// Brightness and two differences of colour: they become red, green and blue.
+    /// True for `YCbCr` data, which is converted to RGB.
     pub(super) is_ybr: bool,
 }
 
-/// Fills `out` with the numbers of a picture, row by row; how many there are.
+/// Decodes a picture into `out`, row by row; returns the number of bytes.
 ///
 /// # Errors
-/// `Io` with what is wrong with it.
+/// `Io` with a description of the defect.
 pub(super) fn expand(picture: Picture<'_>, packed: &[u8], out: &mut [u8]) -> Result<usize, Fault> {
-    // A decoder that stumbles takes the picture with it, not the program.
+    // A panic of the decoder becomes an error of this picture, and does not end the program.
     let decoded = catch_unwind(AssertUnwindSafe(|| decode(picture, packed, out.len())))
         .unwrap_or_else(|_| Err("it is broken in a way that its decoder does not know".to_owned()));
     let decoded = decoded.map_err(|why| Fault::Io(io::Error::other(why)))?;
@@ -61,7 +61,7 @@ fn decode(picture: Picture<'_>, packed: &[u8], wanted: usize) -> Result<Vec<u8>,
         (found, _) => return Err(format!("its picture has pixels of the kind {found:?}")),
     }
     if samples == 3 {
-        // The page says what colours are, whatever other programs write into the picture.
+        // The directory of the page decides on the colour space, whatever other programs write into the picture.
         decoder.set_color_transform(if is_ybr { ColorTransform::YCbCr } else { ColorTransform::RGB });
     }
     let whole = usize::try_from(row.saturating_mul(height)).unwrap_or(usize::MAX);
@@ -80,13 +80,13 @@ mod tests {
         stream
     }
 
-    /// The segments of tables as a stream of their own, and the stream without them.
+    /// Splits a stream into one with the tables only, and the stream without them.
     fn apart(stream: &[u8]) -> [Vec<u8>; 2] {
         let (mut tables, mut rest) = (START.to_vec(), START.to_vec());
         let mut at = 2;
         loop {
             let end = at + 2 + usize::from(u16::from_be_bytes([stream[at + 2], stream[at + 3]]));
-            // Tables for quantising and for codes.
+            // Quantisation and Huffman tables (DQT and DHT).
             let is_table = matches!(stream[at + 1], 0xdb | 0xc4);
             if is_table { &mut tables } else { &mut rest }.extend(&stream[at..end]);
             if stream[at + 1] == 0xda {
@@ -118,7 +118,7 @@ mod tests {
         let [tables, rest] = apart(&stream);
         assert!(expanded(picture, &rest, pixels.len()).is_err(), "its tables are elsewhere");
         assert_eq!(expanded(Picture { tables: &tables, ..picture }, &rest, pixels.len()), Ok(whole.clone()));
-        // The last strip of a page has fewer rows, its picture may have all.
+        // The last strip of a page has fewer rows, but its picture may have all.
         assert_eq!(expanded(picture, &stream, 16 * 5).unwrap(), whole[..16 * 5]);
     }
 
@@ -131,7 +131,7 @@ mod tests {
         let near =
             |found: [u8; 3], wanted: [u8; 3]| found.iter().zip(wanted).all(|(a, b)| a.abs_diff(b) <= 2);
         assert!(near(first(picture).unwrap(), [200, 30, 90]));
-        // Brightness and differences as they are, by the weights of ITU-R BT.601.
+        // Luma and colour differences without conversion, by the weights of ITU-R BT.601.
         assert!(near(first(Picture { is_ybr: false, ..picture }).unwrap(), [88, 129, 208]));
     }
 

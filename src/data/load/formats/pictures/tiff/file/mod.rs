@@ -1,4 +1,4 @@
-//! A TIFF file: its pages, and the numbers of each.
+//! TIFF file: its pages, and the decoding of their samples.
 
 pub(super) mod bytes;
 mod codec;
@@ -26,40 +26,41 @@ use directory::{Directory, Entry, walk};
 use page::{Offsets, Page};
 use unpack::{restore, widen};
 
-/// Most strips or tiles of a page: those of 256 x 256 pixels are so many in a page of a quarter of a million squared.
+/// Maximum number of strips or tiles of a page: tiles of 256 x 256 pixels reach it in a page of 262144 x 262144.
 const MOST_PARTS: u64 = 1 << 20;
 
-/// Tiles that show nothing may be the same bytes. As many bytes as this are read again, beyond those of the file.
+/// Maximum number of bytes that are read more than once: blank tiles may share the same bytes.
 const MOST_SHARED_BYTES: u64 = 32 << 20;
 
-/// Tables of JPEG: four for quantising and eight for codes have 2.7 KiB.
+/// Maximum size of JPEG tables: four quantisation and eight Huffman tables have 2.7 KiB.
 const MOST_TABLES_BYTES: u64 = 64 << 10;
 
-/// A file whose pages are known.
+/// TIFF file whose pages have been listed.
 pub(super) struct Tiff {
     pub(super) bytes: Bytes,
-    /// All of them, in the order of the file.
+    /// All pages in file order.
     pub(super) pages: Vec<Page>,
-    /// What is said of the first.
+    /// Directory of the first page.
     pub(super) first: Directory,
 }
 
-/// The parts of a page as they lie in the file.
+/// Strips or tiles of a page, compressed as in the file.
 pub(super) struct Packed {
     page: Page,
     endian: Endian,
-    /// By sample, where each has its own; then by row and column of parts. An empty one was never written.
+    /// Compressed data by sample, where each sample has its own, then by row and column. Empty where a strip or tile
+    /// was never written.
     parts: Vec<Vec<u8>>,
     samples: usize,
-    /// What its pictures of JPEG share.
+    /// JPEG tables that the strips or tiles share.
     tables: Vec<u8>,
 }
 
 impl Tiff {
-    /// Goes through the pages of a file.
+    /// Reads the directories of all pages.
     ///
     /// # Errors
-    /// `BadInput` for what is no TIFF file, or a broken one.
+    /// `BadInput` for a file that is not TIFF, or is broken.
     pub(super) fn open(attempt: Attempt<'_>, input: Input, control: &LoadControl) -> Result<Self, LoadError> {
         let len = input.len;
         let mut bytes = Bytes::of(input.reader.into_inner(), len);
@@ -73,25 +74,25 @@ impl Tiff {
         Ok(Self { bytes, pages, first: first.unwrap_or_default() })
     }
 
-    /// A number of the first page's directory.
+    /// Number in an entry of the first page's directory.
     pub(super) fn said(&mut self, tag: u16) -> Option<f64> {
         self.first.get(tag)?.first(&mut self.bytes)
     }
 
-    /// The text of an entry of the first page's directory, at most so many bytes of it.
+    /// Text in an entry of the first page's directory, at most `most` bytes of it.
     pub(super) fn text(&mut self, tag: u16, most: u64) -> Option<String> {
         self.first.get(tag)?.text(&mut self.bytes, most).ok()
     }
 
-    /// The text of an entry of any page, at most so many bytes of it.
+    /// Text in an entry of any page, at most `most` bytes of it.
     pub(super) fn text_of(&mut self, entry: Entry, most: u64) -> Option<String> {
         entry.text(&mut self.bytes, most).ok()
     }
 
-    /// Fetches the parts of a page: all, or those of one sample where each sample has its own.
+    /// Reads the strips or tiles of a page: all, or those of one sample where samples are separate.
     ///
     /// # Errors
-    /// As [`Self::check_room`]; `Limit` where the memory is not there.
+    /// As [`Self::check_room`]; `Limit` where memory is exhausted.
     pub(super) fn fetch(
         &mut self,
         attempt: Attempt<'_>,
@@ -115,10 +116,10 @@ impl Tiff {
         Ok(Packed { page, endian: self.bytes.endian, parts, samples, tables })
     }
 
-    /// Checks that the file has room for the parts of a page, and they for its pixels.
+    /// Checks that the strips or tiles of a page lie within the file, and that they can hold its pixels.
     ///
     /// # Errors
-    /// `BadInput` where they are not in the file, too short, or not of a kind that is read.
+    /// `BadInput` where they do not, or where their encoding is not supported.
     pub(super) fn check_room(
         &mut self,
         attempt: Attempt<'_>,
@@ -129,7 +130,7 @@ impl Tiff {
         self.places(attempt, number, sample, control).map(drop)
     }
 
-    /// A page, and where the parts lie that [`Self::fetch`] fetches.
+    /// Returns a page, and the locations of the strips or tiles that [`Self::fetch`] reads.
     fn places(
         &mut self,
         attempt: Attempt<'_>,
@@ -151,7 +152,7 @@ impl Tiff {
             (true, None) => 0..page.samples,
             (false, _) => 0..1,
         };
-        // Each part that is listed takes some bytes of the file, so that this is no more than the file is long.
+        // Each listed strip or tile takes some bytes of the file, so that the count is bounded by the file's length.
         let listed = match page.offsets {
             Offsets::At(_) => 1,
             Offsets::Listed(entry) => entry.count,
@@ -185,9 +186,9 @@ impl Tiff {
             let row = at as u64 % per_sample / across;
             let whole = page.part_bytes(samples, row);
             let count = match counts.get(at).copied() {
-                // Programs that write more than 4 GiB as one part cannot say so.
+                // Uncompressed strips over 4 GiB have a wrong count, since it is a 32-bit number.
                 _ if page.compression == 1 => whole,
-                // No compression makes things longer than this.
+                // No compression scheme expands data beyond this.
                 Some(count) => count.min(whole.saturating_mul(2).saturating_add(1 << 16)),
                 None => return Err(fault(io::ErrorKind::InvalidData.into())),
             };
@@ -211,14 +212,14 @@ impl Tiff {
     }
 }
 
-/// Where a part lies in the file; of no bytes where it was never written.
+/// Location of a strip or tile in the file; of no bytes where it was never written.
 struct Place {
     offset: u64,
     count: u64,
 }
 
-/// So many bytes of zero, which take memory only as they are written: a page that holds less than it announces takes no
-/// more than it holds.
+/// Allocates `count` zero bytes, whose pages are committed only as they are written: a page with less data than it
+/// announces takes only the memory for those.
 pub(super) fn zeroed(attempt: Attempt<'_>, field: &str, count: u64) -> Result<Vec<u8>, LoadError> {
     let room = usize::try_from(count).ok().and_then(|count| try_zeroed_vec(count).ok());
     room.ok_or_else(|| {
@@ -228,15 +229,15 @@ pub(super) fn zeroed(attempt: Attempt<'_>, field: &str, count: u64) -> Result<Ve
 }
 
 impl Packed {
-    /// Bytes of its parts.
+    /// Compressed bytes of all strips or tiles.
     pub(super) fn len(&self) -> u64 {
         self.parts.iter().map(|part| part.len() as u64).sum()
     }
 
-    /// The numbers of the page, little-endian, those of a pixel beside each other.
+    /// Decodes the page to little-endian samples, interleaved by pixel.
     ///
     /// # Errors
-    /// `BadInput` where a part is broken or too short.
+    /// `BadInput` where a strip or tile is broken or too short.
     pub(super) fn unpack(
         &self,
         attempt: Attempt<'_>,
@@ -253,7 +254,7 @@ impl Packed {
         let mut all = zeroed(attempt, &field, bytes)?;
         let plane_bytes = all.len() / planes;
         for (plane, parts) in all.chunks_exact_mut(plane_bytes).zip(self.parts.chunks(across * down)) {
-            // Rows of parts on all cores.
+            // Rows of strips or tiles in parallel.
             let rows = plane
                 .par_chunks_mut(row_bytes.saturating_mul(page.part[1] as usize))
                 .zip(parts.par_chunks(across));
@@ -266,7 +267,7 @@ impl Packed {
         Ok(if planes > 1 { woven(&all, planes, size) } else { all })
     }
 
-    /// Puts what a part holds where it belongs among some rows.
+    /// Decodes a strip or tile into a band of rows of the page.
     fn unpack_part(
         &self,
         attempt: Attempt<'_>,
@@ -295,7 +296,7 @@ impl Packed {
         let mut part = zeroed(attempt, field, whole)?;
         self.expand(attempt, field, packed, &mut part, control)?;
         restore(page, self.endian, self.samples, packed_row, &mut part);
-        // What of a row lies within the page.
+        // Part of a row that lies within the page.
         let first = column * page.part[0] as usize;
         let pixels = (page.part[0] as usize).min(page.width as usize - first);
         let mut wide = Vec::new();
@@ -358,7 +359,7 @@ impl Packed {
     }
 }
 
-/// Numbers of several planes beside each other.
+/// Interleaves the samples of several planes.
 fn woven(planes: &[u8], count: usize, size: usize) -> Vec<u8> {
     let plane = planes.len() / count;
     let mut woven = Vec::with_capacity(planes.len());

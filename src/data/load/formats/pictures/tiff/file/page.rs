@@ -1,4 +1,4 @@
-//! A page of a TIFF file: its size, its numbers, and where its parts lie.
+//! Page of a TIFF file: its size, number type, and the location of its strips or tiles.
 
 use std::io;
 
@@ -6,7 +6,7 @@ use super::bytes::Bytes;
 use super::directory::{Directory, Entry};
 use crate::data::load::reading::number::Number;
 
-/// Tags of entries (TIFF 6.0, sections 8 to 22).
+/// Tags of directory entries (TIFF 6.0, sections 8 to 22).
 pub(in super::super) mod tag {
     pub(in super::super::super) const NEW_SUBFILE_TYPE: u16 = 254;
     pub(in super::super::super) const SUBFILE_TYPE: u16 = 255;
@@ -33,80 +33,81 @@ pub(in super::super) mod tag {
     pub(in super::super::super) const EXTRA_SAMPLES: u16 = 338;
     pub(in super::super::super) const JPEG_TABLES: u16 = 347;
     pub(in super::super::super) const SAMPLE_FORMAT: u16 = 339;
-    /// Layers in a page: an extension of a maker of volumes.
+    /// Layers in a page (`ImageDepth`): an extension by SGI for volumes.
     pub(in super::super::super) const DEPTH: u16 = 32997;
-    /// Of GDAL, in text: the value of what was not measured.
+    /// Value of missing data, as text (GDAL).
     pub(in super::super::super) const NO_DATA: u16 = 42113;
-    /// Lengths of what `ImageJ` keeps beside its stacks, and that.
+    /// Lengths and content of the `ImageJ` metadata block.
     pub(in super::super::super) const IMAGEJ_COUNTS: u16 = 50838;
     pub(in super::super::super) const IMAGEJ_CONTENT: u16 = 50839;
-    /// Of Zeiss' laser scanning microscopes.
+    /// Metadata block of Zeiss laser scanning microscopes.
     pub(in super::super::super) const LSM_INFO: u16 = 34412;
 }
 
-/// The kind of colours that is brightness and two differences.
+/// Photometric interpretation `YCbCr`: luma and two colour differences.
 const YBR: u64 = 6;
 
-/// What the samples of a pixel are together.
+/// Meaning of a pixel's samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in super::super) enum Meaning {
-    /// One, or grey and its opacity.
+    /// Grey, possibly with opacity.
     Grey,
-    /// Red, green, blue, and maybe opacity.
+    /// Red, green and blue, possibly with opacity.
     Color,
-    /// What several detectors have seen.
+    /// Channels of several detectors.
     Channels,
-    /// Colours of another kind, by its number.
+    /// Colour space that is not supported, by its number.
     Foreign(u64),
 }
 
-/// Where the parts of a page are listed.
+/// Location of a page's strips or tiles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in super::super) enum Offsets {
-    /// In an entry.
+    /// Directory entry that lists them.
     Listed(Entry),
-    /// There is one part, and it is here.
+    /// Offset of the only strip.
     At(u64),
 }
 
-/// A page.
+/// Page of a TIFF file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in super::super) struct Page {
     pub(in super::super) width: u64,
     pub(in super::super) height: u64,
     pub(in super::super) bits: u64,
     pub(in super::super) format: u64,
-    /// Numbers of each pixel.
+    /// Number of samples per pixel.
     pub(in super::super) samples: usize,
     pub(in super::super) meaning: Meaning,
-    /// 0 stands for white.
+    /// True if 0 means white.
     pub(in super::super) is_inverted: bool,
-    /// Each sample has its own parts.
+    /// True if each sample has strips or tiles of its own.
     pub(in super::super) is_planar: bool,
     pub(in super::super) compression: u64,
     pub(in super::super) predictor: u64,
-    /// What pictures of JPEG share.
+    /// Shared tables of JPEG strips or tiles.
     pub(in super::super) jpeg_tables: Option<Entry>,
-    /// Colours are brightness and two differences, as in JPEG.
+    /// True if colours are `YCbCr`, as usual in JPEG.
     pub(in super::super) is_ybr: bool,
-    /// Bits of a byte from the lowest.
+    /// True if the bits of a byte begin with the least significant.
     pub(in super::super) is_reversed: bool,
     pub(in super::super) is_tiled: bool,
-    /// Pixels of a strip or tile.
+    /// Width and height of a strip or tile, in pixels.
     pub(in super::super) part: [u64; 2],
     pub(in super::super) offsets: Offsets,
     pub(in super::super) counts: Option<Entry>,
-    /// Not what was recorded itself: smaller, or a mask.
+    /// True if the page is not itself recorded data: a reduced copy, or a mask.
     pub(in super::super) is_aside: bool,
-    /// Words about it: some programs write theirs behind those of the user.
+    /// Description entries: some programs add their own after the user's.
     pub(in super::super) descriptions: [Option<Entry>; 2],
 }
 
 impl Page {
-    /// What a directory says.
+    /// Parses a directory.
     ///
     /// # Errors
-    /// `UnexpectedEof` where it points beyond the file, `InvalidData` for what cannot be, `Unsupported` for layers.
+    /// `UnexpectedEof` where it points beyond the file, `InvalidData` for invalid values, `Unsupported` for several
+    /// layers.
     pub(in super::super) fn of(file: &mut Bytes, directory: &Directory) -> io::Result<Self> {
         let mut say = |tag, default: Option<u64>| match (directory.get(tag), default) {
             (Some(entry), _) => entry.whole(file),
@@ -118,7 +119,7 @@ impl Page {
             return Err(io::ErrorKind::Unsupported.into());
         }
         let (bits, samples) = (say(tag::BITS, Some(1))?, say(tag::SAMPLES, Some(1))?);
-        // 1 is "black is zero", what most are; some programs leave it out.
+        // 1 is "black is zero", the most common; some programs omit it.
         let photometric = say(tag::PHOTOMETRIC, Some(1))?;
         let extra = directory.get(tag::EXTRA_SAMPLES).map(|_| say(tag::EXTRA_SAMPLES, None)).transpose()?;
         let samples = usize::from(u16::try_from(samples).ok().ok_or(io::ErrorKind::InvalidData)?);
@@ -130,7 +131,7 @@ impl Page {
         };
         let compression = say(tag::COMPRESSION, Some(1))?;
         let is_jpeg = matches!(compression, 6 | 7);
-        // The decoder makes red, green and blue of them.
+        // The JPEG decoder converts YCbCr to red, green and blue.
         let is_ybr = is_jpeg && photometric == YBR && samples == 3;
         let subfile = say(tag::NEW_SUBFILE_TYPE, Some(0))?;
         let old_subfile = say(tag::SUBFILE_TYPE, Some(1))?;
@@ -144,7 +145,7 @@ impl Page {
             is_inverted: photometric == 0,
             is_planar: say(tag::PLANAR, Some(1))? == 2 && samples > 1,
             compression,
-            // Neither is for pictures.
+            // JPEG uses neither predictor nor fill order.
             predictor: if is_jpeg { 1 } else { say(tag::PREDICTOR, Some(1))? },
             is_reversed: !is_jpeg && say(tag::FILL_ORDER, Some(1))? == 2,
             jpeg_tables: directory.get(tag::JPEG_TABLES).filter(|_| is_jpeg),
@@ -156,7 +157,7 @@ impl Page {
                 .map(Offsets::Listed)
                 .ok_or(io::ErrorKind::InvalidData)?,
             counts: directory.get(if is_tiled { tag::TILE_COUNTS } else { tag::STRIP_COUNTS }),
-            // Bit 0: of reduced resolution; bit 2: a mask. In the older tag 2 is of reduced resolution.
+            // Bit 0: reduced resolution; bit 2: mask. In the older tag 2 means reduced resolution.
             is_aside: subfile & 0b101 != 0 || old_subfile == 2,
             descriptions: {
                 let mut all = directory.all(tag::DESCRIPTION);
@@ -168,10 +169,10 @@ impl Page {
         if has_none || !is_same { Err(io::ErrorKind::InvalidData.into()) } else { Ok(page) }
     }
 
-    /// Whether all samples have the same bits and format.
+    /// Returns true if all samples have equal bit depth and format.
     fn has_one_kind_of_numbers(&self, file: &mut Bytes, directory: &Directory) -> io::Result<bool> {
         for (tag, first) in [(tag::BITS, self.bits), (tag::SAMPLE_FORMAT, self.format)] {
-            // One number stands for all samples; more than samples say nothing more.
+            // One number stands for all samples; numbers beyond the sample count mean nothing.
             if let Some(entry) = directory.get(tag).filter(|entry| entry.count > 1) {
                 let numbers = entry.numbers(file, self.samples as u64)?;
                 if numbers.iter().any(|&number| number != first) {
@@ -182,9 +183,9 @@ impl Page {
         Ok(true)
     }
 
-    /// The type of its numbers, once they are unpacked; `None` where there is none.
+    /// Number type of the unpacked samples; `None` where unsupported.
     pub(in super::super) fn number(&self) -> Option<Number> {
-        // 1 is unsigned, 2 signed, 3 floating point; 4 is "unknown", which is mostly unsigned.
+        // 1 is unsigned, 2 signed, 3 floating point; 4 is "undefined", mostly unsigned.
         match (self.format, self.bits) {
             (1 | 4, 1..=8) => Some(Number::U8),
             (1 | 4, 9..=16) => Some(Number::U16),
@@ -201,7 +202,7 @@ impl Page {
         }
     }
 
-    /// Whether another page can be a slice beside this one.
+    /// Returns true if both pages can be slices of one volume.
     pub(in super::super) fn is_like(&self, other: &Self) -> bool {
         let kind = |page: &Self| {
             let (size, number) = ([page.width, page.height], (page.bits, page.format));
@@ -210,13 +211,13 @@ impl Page {
         kind(self) == kind(other)
     }
 
-    /// Bytes of its numbers once they are unpacked; `None` where that is more than can be counted.
+    /// Bytes of all unpacked samples; `None` on overflow or for an unsupported number type.
     pub(in super::super) fn bytes(&self) -> Option<u64> {
         let of_pixel = (self.number()?.bytes() as u64).checked_mul(self.samples as u64)?;
         self.width.checked_mul(self.height)?.checked_mul(of_pixel)
     }
 
-    /// Whether all its numbers lie in the file as they are, row by row.
+    /// Returns true if the samples lie in the file row by row, uncompressed.
     pub(in super::super) fn is_bare(&self) -> bool {
         self.compression == 1
             && self.predictor == 1
@@ -226,14 +227,15 @@ impl Page {
     }
 }
 
-/// What samples are, by the kind of colours (TIFF 6.0, `PhotometricInterpretation`) and what those beyond them are said
-/// to be.
+/// Meaning of the samples, by the colour space (TIFF 6.0, `PhotometricInterpretation`) and the kind of the extra
+/// samples.
 fn meaning(photometric: u64, samples: usize, extra: Option<u64>) -> Meaning {
-    // Extra samples of kind 1 and 2 are opacity.
+    // Extra samples of kinds 1 and 2 are opacity (alpha).
     let is_opacity = matches!(extra, Some(1 | 2));
     match photometric {
         2 if matches!(samples, 3 | 4) => Meaning::Color,
-        // Black or white is zero, a palette (of which the numbers are shown), and red, green, blue of other numbers.
+        // White is zero, black is zero, RGB with an unusual number of samples, and palette colours (whose indices are
+        // shown).
         0..=3 if samples == 1 || (samples == 2 && is_opacity) => Meaning::Grey,
         0..=3 => Meaning::Channels,
         other => Meaning::Foreign(other),

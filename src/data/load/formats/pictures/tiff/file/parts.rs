@@ -1,4 +1,4 @@
-//! The strips or tiles of a page: how many there are, how long each is, and whether they are of a kind that is read.
+//! Strips and tiles of a TIFF page: their number and lengths, and whether their encoding is supported.
 
 use super::super::fault::{HELP, compression_name};
 use super::codec::Codec;
@@ -6,28 +6,28 @@ use super::page::{Meaning, Page};
 use crate::data::attempt::Attempt;
 use crate::data::load::LoadError;
 
-/// A tile may be larger than its page by so much: pages are rounded up to whole tiles, of 256 x 256 pixels mostly.
+/// Maximum excess of a tile over its page, in bytes: pages are rounded up to whole tiles, mostly of 256 x 256 pixels.
 const MOST_TILE_EXCESS: u64 = 64 << 20;
 
 impl Page {
-    /// Parts across and down.
+    /// Number of strips or tiles across and down.
     pub(super) fn grid(&self) -> [u64; 2] {
         [self.width.div_ceil(self.part[0]), self.height.div_ceil(self.part[1])]
     }
 
-    /// Bytes of a row of a part, as it is before it is compressed.
+    /// Bytes of a row of a strip or tile, uncompressed.
     pub(super) fn row_bytes(&self, samples: usize) -> u64 {
         (u128::from(self.part[0]) * samples as u128 * u128::from(self.bits)).div_ceil(8) as u64
     }
 
-    /// Bytes of a part in a row of parts; the last strip may be shorter.
+    /// Uncompressed bytes of a strip or tile in row `row`; the last strip may be shorter.
     pub(super) fn part_bytes(&self, samples: usize, row: u64) -> u64 {
         let left = self.height - row * self.part[1];
         let rows = if self.is_tiled { self.part[1] } else { self.part[1].min(left) };
         self.row_bytes(samples).saturating_mul(rows)
     }
 
-    /// Whether it is of a kind that is read, and its sizes can be.
+    /// Checks that the page's encoding is supported and its sizes are plausible.
     pub(in super::super) fn check(&self, attempt: Attempt<'_>, field: &str) -> Result<(), LoadError> {
         let refuse = |why: String, help: &str| Err(attempt.bad_input(field, why, help));
         let bits = self.bits;

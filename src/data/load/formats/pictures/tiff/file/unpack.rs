@@ -1,10 +1,9 @@
-//! Numbers of a strip or tile as they were before they were made easier to compress: in little-endian order, whole bytes
-//! each.
+//! Undoing of TIFF predictors, byte order and bit packing, to little-endian numbers of whole bytes.
 
 use super::page::Page;
 use crate::data::load::Endian;
 
-/// Undoes what was done to the rows of a part. `samples` are the numbers of each pixel in it.
+/// Undoes predictor and byte order in the rows of a strip or tile; `samples` is the number of interleaved components.
 pub(super) fn restore(page: &Page, endian: Endian, samples: usize, row_bytes: usize, part: &mut [u8]) {
     let size = (page.bits / 8) as usize;
     let mut scratch = Vec::new();
@@ -14,7 +13,7 @@ pub(super) fn restore(page: &Page, endian: Endian, samples: usize, row_bytes: us
                 to_little(row, size, endian);
                 add_up(row, size, samples);
             }
-            // Its bytes are in the order of their weight, whatever that of the file is.
+            // Predictor 3 orders bytes by significance, whatever the byte order of the file.
             3 => join_floats(row, size, samples, &mut scratch),
             _ => to_little(row, size, endian),
         }
@@ -27,7 +26,8 @@ fn to_little(row: &mut [u8], size: usize, endian: Endian) {
     }
 }
 
-/// Each number is the difference to the one before (TIFF 6.0, section 14), also those that are not whole: of their bits.
+/// Undoes horizontal differencing (TIFF 6.0, section 14): each number is the difference to its predecessor;
+/// floating-point numbers as bit patterns.
 fn add_up(row: &mut [u8], size: usize, samples: usize) {
     macro_rules! add {
         ($type:ty) => {{
@@ -53,7 +53,8 @@ fn add_up(row: &mut [u8], size: usize, samples: usize) {
     }
 }
 
-/// Bytes of the highest weight first, then the next ones; all of them differences (TIFF Technical Note 3).
+/// Undoes the floating-point predictor (TIFF Technical Note 3): planes of bytes, the most significant first, stored
+/// as differences.
 fn join_floats(row: &mut [u8], size: usize, samples: usize, scratch: &mut Vec<u8>) {
     for at in samples..row.len() {
         row[at] = row[at].wrapping_add(row[at - samples]);
@@ -68,8 +69,8 @@ fn join_floats(row: &mut [u8], size: usize, samples: usize, scratch: &mut Vec<u8
     }
 }
 
-/// Numbers of less than a byte, or of less than two, each in one or two bytes. They lie one after the other from the
-/// highest bit; rows begin with whole bytes.
+/// Widens numbers of fewer than 8 or 16 bits to one or two bytes. They are packed from the most significant bit; rows
+/// begin at whole bytes.
 pub(super) fn widen(packed: &[u8], bits: u64, count: usize, wide: &mut Vec<u8>) {
     let (mut held, mut held_bits) = (0u32, 0u64);
     let mut bytes = packed.iter();

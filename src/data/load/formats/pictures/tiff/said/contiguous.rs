@@ -1,5 +1,5 @@
-//! Slices that follow each other in a file that has a page for the first of them alone, as `ImageJ` writes more than
-//! 4 GiB and tifffile what it is asked to truncate.
+//! Contiguous slices of which only the first has a page: `ImageJ` writes stacks over 4 GiB like this, and tifffile
+//! when asked to truncate.
 
 use super::super::fault::{HELP, unreadable};
 use super::super::file::Tiff;
@@ -8,10 +8,10 @@ use super::super::file::page::{Offsets, Page};
 use crate::data::attempt::Attempt;
 use crate::data::load::LoadError;
 
-/// Pages for so many slices, of which the first is `page`.
+/// Creates the pages of `images` slices, the first of which is `page`.
 ///
 /// # Errors
-/// `BadInput` naming `field` where the file has no room for them.
+/// `BadInput` naming `field` where the file is too short for them.
 pub(super) fn contiguous(
     attempt: Attempt<'_>,
     tiff: &mut Tiff,

@@ -1,7 +1,8 @@
-//! What `ImageJ` says of its stacks: lines of `name=value` in the description of the first page.
+//! `ImageJ` metadata: lines of `name=value` in the description of the first page.
 //!
-//! After what `ImageJ` itself writes (its class `FileSaver`). Stacks over 4 GiB have one page for all slices, which
-//! follow each other in the file. Of channels, slices and time steps the channels follow each other first.
+//! After the files that `ImageJ` itself writes (its class `FileSaver`). Stacks over 4 GiB have only one page, whose
+//! data are followed by those of the other slices. Channels vary fastest over the pages, then slices, then time
+//! steps.
 
 use super::super::fault::HELP;
 use super::super::file::Tiff;
@@ -15,10 +16,10 @@ use crate::data::attempt::Attempt;
 use crate::data::load::reading::input::stem;
 use crate::data::load::{Choice, LoadError};
 
-/// Most channels that `ImageJ` shows together.
+/// Maximum number of channels that `ImageJ` shows together.
 const MOST_CHANNELS: usize = 7;
 
-/// The lines of a description.
+/// Lines of an `ImageJ` description.
 struct Said<'a>(&'a str);
 
 impl<'a> Said<'a> {
@@ -35,12 +36,12 @@ impl<'a> Said<'a> {
     }
 }
 
-/// Whether a description is one of `ImageJ`'s.
+/// Returns true if a description was written by `ImageJ`.
 pub(in super::super) fn is_imagej(description: &str) -> bool {
     description.starts_with("ImageJ=")
 }
 
-/// The stack of a file with such a description.
+/// Builds the stack of a file with such a description.
 pub(in super::super) fn stack(
     attempt: Attempt<'_>,
     tiff: &mut Tiff,
@@ -63,11 +64,11 @@ pub(in super::super) fn stack(
     let (channels, frames) = (said.count("channels").unwrap_or(1), said.count("frames").unwrap_or(1));
     let slices = said.count("slices");
     let others = channels.checked_mul(frames);
-    // Old versions say no more than how many there are in all.
+    // Old versions give only the total number of images.
     let slices = slices.or_else(|| others.map(|others| (pages.len() / others).max(1))).unwrap_or(1);
     let is_whole = others.and_then(|others| others.checked_mul(slices)).is_some_and(|all| all <= pages.len());
     let (channels, slices, frames) = if is_whole {
-        // Programs that write its files without saying which axis is which make slices channels.
+        // Programs that write such files without naming the axes make slices channels.
         let is_depth = channels > MOST_CHANNELS && [slices, frames] == [1, 1] && choice.channel.is_none();
         if is_depth {
             remarks.push(format!("{channels} channels of one slice each are taken as slices"));
@@ -103,9 +104,9 @@ pub(in super::super) fn stack(
     })
 }
 
-/// What values mean: stored ones times the first, plus the second. `ImageJ` has signed numbers of 16 bits in this way.
+/// Slope and intercept of the values. `ImageJ` stores signed 16-bit numbers in this way.
 fn scale(said: &Said<'_>) -> [f64; 2] {
-    // 0 is a straight line; curves are for densities of films.
+    // Function 0 is linear; others are calibration curves for film densities.
     match (said.text("cf"), said.number("c0"), said.number("c1")) {
         (Some("0"), Some(intercept), Some(slope)) => [slope, intercept],
         _ => [1.0, 0.0],
@@ -114,11 +115,11 @@ fn scale(said: &Said<'_>) -> [f64; 2] {
 
 fn hints(said: &Said<'_>, channels: usize) -> Hints {
     let mut hints = Hints::default();
-    // Of several channels they are those of the first.
+    // With several channels, the window is that of the first.
     if let (1, Some(low), Some(high)) = (channels, said.number("min"), said.number("max")) {
         hints.set_window(low, high);
     }
-    // What it calls values that mean nothing in particular.
+    // "Gray value" is the default unit, without meaning.
     if let Some(unit) = said.text("vunit").filter(|unit| !unit.eq_ignore_ascii_case("gray value")) {
         hints.set_unit(unit);
     }

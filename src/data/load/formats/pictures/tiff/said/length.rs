@@ -1,6 +1,6 @@
-//! Units of length.
+//! Units of length by their names in microscope software.
 
-/// Millimetres of a unit as programs for microscopes write it; `None` for what is no length.
+/// Length of a unit in millimetres; `None` for any other text.
 pub(super) fn millimetres(unit: &str) -> Option<f64> {
     // The micro sign is also written as the Greek letter, and as an escape of Java.
     let unit = unit.trim().replace("\\u00B5", "µ").replace("\\u00b5", "µ").replace('μ', "µ");
@@ -11,7 +11,7 @@ pub(super) fn millimetres(unit: &str) -> Option<f64> {
         "µm" | "um" | "µ" | "micron" | "microns" | "micrometer" | "micrometers" | "micrometre" => 1e-3,
         "nm" | "nanometer" | "nanometers" | "nanometre" => 1e-6,
         "pm" | "picometer" => 1e-9,
-        // Also as the sign of the unit, which is a character of its own.
+        // Also as the angstrom sign, which is a character of its own.
         "Å" | "\u{212b}" | "A" | "angstrom" | "Angstrom" => 1e-7,
         "in" | "inch" | "inches" => 25.4,
         _ => return None,

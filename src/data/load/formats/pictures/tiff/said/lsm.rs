@@ -1,5 +1,5 @@
-//! What Zeiss' laser scanning microscopes say in an entry of their own: how many slices and times there are, and how large
-//! voxels are. Pages go through the slices of a time first; channels are the samples of a page.
+//! LSM metadata of Zeiss laser scanning microscopes, in a directory entry of their own: numbers of slices and time
+//! steps, and the voxel size. Slices vary fastest over the pages; channels are the samples of a page.
 
 use super::super::fault::HELP;
 use super::super::file::Tiff;
@@ -14,22 +14,22 @@ use crate::data::load::reading::placement::Placement;
 use crate::data::load::{Choice, LoadError};
 use crate::data::{Hints, Modality};
 
-/// How the entry begins, of versions 1.3 and later.
+/// Magic numbers of the entry, versions 1.3 and later.
 const MAGIC: [u64; 2] = [0x0030_0494, 0x0040_0494];
 
-/// Bytes of the entry that are looked at, to the end of the sizes of voxels.
+/// Number of bytes of the entry that are read, to the end of the voxel sizes.
 const INFO_BYTES: u64 = 64;
 
-/// What is said.
+/// Contents of the LSM entry.
 pub(in super::super) struct Info {
     slices: usize,
     frames: usize,
-    /// In metres.
+    /// Voxel size, in metres.
     spacing: [f64; 3],
 }
 
 impl Info {
-    /// Of a file that has such an entry.
+    /// Reads the entry; `None` where a file has none.
     pub(in super::super) fn of(tiff: &mut Tiff) -> Option<Self> {
         let bytes = tiff.first.get(tag::LSM_INFO)?.raw(&mut tiff.bytes, INFO_BYTES).ok()?;
         let number = |at: usize, size: usize| Some(whole(bytes.get(at..at + size)?, Endian::Little));
@@ -42,7 +42,7 @@ impl Info {
         })
     }
 
-    /// The stack of such a file.
+    /// Builds the stack of an LSM file.
     pub(in super::super) fn stack(
         &self,
         attempt: Attempt<'_>,
@@ -57,7 +57,7 @@ impl Info {
         };
         let mut remarks = Vec::new();
         let pages = usable(tiff, &mut remarks);
-        // Thumbnails are always there.
+        // Without a remark on thumbnails: LSM files always have them.
         placement.remarks.extend(remarks.into_iter().filter(|remark| !remark.contains("smaller versions")));
         let Some(first) = pages.first().map(|&page| tiff.pages[page]) else {
             return Err(attempt.bad_input("pages", "there is none", HELP));

@@ -1,4 +1,4 @@
-//! What programs say of the pages of their TIFF files: which slice, channel and time each is, and how large voxels are.
+//! Metadata in TIFF files, by the program that wrote them: slice, channel and time of each page, and the voxel size.
 
 mod contiguous;
 pub(super) mod imagej;

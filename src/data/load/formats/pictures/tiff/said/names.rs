@@ -1,32 +1,32 @@
-//! Names of channels in what `ImageJ` keeps beside its stacks: labels of slices, and lines of words about the picture.
+//! Channel names in the `ImageJ` metadata block: slice labels, and info lines about the image.
 //!
-//! `ImageJ` has two entries of its own: 50838 with the lengths of what 50839 holds, one after the other (its classes
-//! `TiffEncoder` and `TiffDecoder`). Text is UTF-16 in the byte order of the file.
+//! `ImageJ` has two entries of its own: 50838 with the lengths of the parts of 50839 (its classes `TiffEncoder` and
+//! `TiffDecoder`). Text is UTF-16 in the byte order of the file.
 
 use super::super::file::Tiff;
 use super::super::file::page::tag;
 use crate::data::load::Endian;
 
-/// Bytes that are read of both entries: labels of a hundred thousand slices.
+/// Maximum length of the metadata, in bytes: labels of a hundred thousand slices.
 const MOST_BYTES: u64 = 16 << 20;
 
-/// Kinds of parts, as numbers of four letters.
+/// Types of parts, as numbers of four letters.
 const INFO: u32 = u32::from_be_bytes(*b"info");
 const LABELS: u32 = u32::from_be_bytes(*b"labl");
-/// Begins the list of kinds.
+/// Magic number at the beginning of the list of types.
 const MAGIC: u32 = u32::from_be_bytes(*b"IJIJ");
 
-/// Words that `ImageJ` keeps beside the pages.
+/// Texts of the `ImageJ` metadata block.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(super) struct ImagejMetadata {
-    /// A label for each page, or, of other programs, for each channel.
+    /// Label of each page, or, from other programs, of each channel.
     labels: Vec<String>,
-    /// Lines like `key = value`.
+    /// Info lines of the form `key = value`.
     info: String,
 }
 
 impl ImagejMetadata {
-    /// Those of a file; nothing where it has no such entries, or broken ones.
+    /// Reads the metadata of a file; empty where it has no such entries, or broken ones.
     pub(super) fn read(tiff: &mut Tiff) -> Self {
         let counts = tiff.first.get(tag::IMAGEJ_COUNTS);
         let counts = counts.and_then(|entry| entry.numbers(&mut tiff.bytes, MOST_BYTES / 4).ok());
@@ -36,7 +36,7 @@ impl ImagejMetadata {
         Self::parse(&counts, &content, tiff.bytes.endian).unwrap_or_default()
     }
 
-    /// The parts of such entries, whose first length is that of the list of kinds.
+    /// Parses the entries; the first length is that of the list of types.
     fn parse(counts: &[u64], content: &[u8], endian: Endian) -> Option<Self> {
         let (&header, lengths) = counts.split_first()?;
         let number = |bytes: &[u8]| {
@@ -66,7 +66,7 @@ impl ImagejMetadata {
         Some(kept)
     }
 
-    /// Names of so many channels of so many pages, in which channels follow each other first; none where they say nothing.
+    /// Names of the channels, which vary fastest over the pages; empty where the metadata have none.
     pub(super) fn channel_names(&self, channels: usize, pages: usize) -> Vec<String> {
         if channels < 2 {
             return Vec::new();
@@ -84,7 +84,7 @@ impl ImagejMetadata {
         lists.into_iter().find(|names| says_something(names)).unwrap_or_default()
     }
 
-    /// The labels of the first page of each channel, where all pages of it have the same.
+    /// Label of the first page of each channel, where all its pages have the same.
     fn labels_of_channels(&self, channels: usize) -> Vec<String> {
         let labels: Vec<String> = self.labels.iter().map(|label| bare(label)).collect();
         let is_same = |channel: usize| {
@@ -112,7 +112,7 @@ impl ImagejMetadata {
     }
 }
 
-/// UTF-16 in the order of a file.
+/// Decodes UTF-16 in the given byte order.
 fn text(bytes: &[u8], endian: Endian) -> String {
     let unit = |pair: &[u8; 2]| match endian {
         Endian::Big => u16::from_be_bytes(*pair),
@@ -121,7 +121,7 @@ fn text(bytes: &[u8], endian: Endian) -> String {
     String::from_utf16_lossy(&bytes.as_chunks::<2>().0.iter().map(unit).collect::<Vec<_>>())
 }
 
-/// A label without its count of channel, slice and time, as in `c:1/2 z:3/8 - DAPI`; its first line.
+/// First line of a label, without the indices of channel, slice and time, as in `c:1/2 z:3/8 - DAPI`.
 fn bare(label: &str) -> String {
     let is_count = |word: &str| {
         let count = word.trim_end_matches(';').split_once(':').and_then(|(axis, count)| {
@@ -144,7 +144,7 @@ pub(crate) mod tests {
         if endian == Endian::Big { value.to_be_bytes() } else { value.to_le_bytes() }
     }
 
-    /// Both entries, as `ImageJ` writes them.
+    /// Encodes both entries as `ImageJ` does.
     pub(crate) fn entries(info: &str, labels: &[&str], endian: Endian) -> (Vec<u64>, Vec<u8>) {
         let text = |text: &str| -> Vec<u8> {
             let unit =

@@ -1,31 +1,31 @@
-//! Tables of colours (TIFF 6.0, section 5): numbers are what was measured, or labels, and the colours belong to the screen.
-//! Labels keep them.
+//! Colour palettes (TIFF 6.0, section 5): values are measurements or labels, and the colours serve display only;
+//! labels keep them.
 
 use crate::data::load::formats::pictures::tiff::file::Tiff;
 use crate::data::load::formats::pictures::tiff::file::page::tag;
 use crate::data::{DataKind, Volume};
 
-/// The kind of pictures whose numbers are places in a table of colours.
+/// Photometric interpretation of palette colours.
 const PALETTE: f64 = 3.0;
 
-/// Numbers of a table for 16 bits, the longest that there is.
+/// Number of entries of a 16-bit palette, the longest possible.
 const MOST_NUMBERS: u64 = 3 << 16;
 
-/// What users are told.
+/// Remark on palettes for the user.
 const REMARK: &str = "values are the numbers of its table of colours";
 
-/// Red of all numbers, then green, then blue; up to 65535.
+/// Palette: red of all entries, then green, then blue, each up to 65535.
 pub(in super::super) struct Palette(Vec<u64>);
 
 impl Palette {
-    /// The table of a file's first page, if it has one.
+    /// Reads the palette of the first page, if it has one.
     pub(in super::super) fn of(tiff: &mut Tiff) -> Option<Self> {
         let is_palette = tiff.said(tag::PHOTOMETRIC) == Some(PALETTE);
         let entry = tiff.first.get(tag::COLOR_MAP).filter(|_| is_palette)?;
         entry.numbers(&mut tiff.bytes, MOST_NUMBERS).ok().map(Self)
     }
 
-    /// The volume, which says what its values are; labels have their colours.
+    /// Adds the remark to a volume and, if it is a label map, the colours of its labels.
     pub(in super::super) fn on(&self, volume: Volume) -> Volume {
         let remarks = volume.remarks().iter().cloned().chain([REMARK.to_owned()]).collect();
         let volume = volume.with_remarks(remarks);
@@ -42,7 +42,7 @@ impl Palette {
     fn color(&self, number: i64) -> Option<[f32; 3]> {
         let count = self.0.len() / 3;
         let at = usize::try_from(number).ok().filter(|&at| at < count)?;
-        // Some programs write bytes as they are.
+        // Some programs write values up to 255.
         let most = if self.0.iter().all(|&part| part < 256) { 255.0 } else { 65535.0 };
         Some([0, 1, 2].map(|part| self.0[part * count + at] as f32 / most))
     }

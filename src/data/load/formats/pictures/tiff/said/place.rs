@@ -1,11 +1,11 @@
-//! Distances of voxels, by the resolution of the first page, a unit and a distance of slices.
+//! Voxel spacing by the resolution of the first page, a unit of length, and the distance between slices.
 
 use super::super::file::Tiff;
 use super::super::file::page::tag;
 use super::length::millimetres;
 use crate::data::load::reading::placement::Placement;
 
-/// Placement of voxels, by the name of a unit of length and the distance of slices in it.
+/// Placement by the name of a unit of length, and the distance between slices in it.
 pub(super) fn place(tiff: &mut Tiff, unit: Option<&str>, spacing: Option<f64>) -> Placement {
     let per_unit = |number: Option<f64>| {
         number.filter(|number| number.is_finite() && *number > 0.0).map(|number| 1.0 / number)
@@ -13,7 +13,7 @@ pub(super) fn place(tiff: &mut Tiff, unit: Option<&str>, spacing: Option<f64>) -
     let across = per_unit(tiff.said(tag::X_RESOLUTION));
     let down = per_unit(tiff.said(tag::Y_RESOLUTION));
     let deep = spacing.filter(|spacing| spacing.is_finite());
-    // What is 1 of the unit is not written.
+    // A length of 1 unit is omitted.
     let lengths = [across.unwrap_or(1.0), down.or(across).unwrap_or(1.0), deep.unwrap_or(1.0)];
     match unit.and_then(millimetres) {
         Some(unit) if across.is_some() => {
@@ -25,7 +25,7 @@ pub(super) fn place(tiff: &mut Tiff, unit: Option<&str>, spacing: Option<f64>) -
             }
             placement
         }
-        // Pixels, or something unknown: no more than how much longer one side is than another.
+        // Pixels, or an unknown unit: only the ratio of the lengths is known.
         _ if deep.is_some() => {
             Placement { is_scale_known: false, ..Placement::spaced([lengths[0], lengths[1], lengths[2]]) }
         }

@@ -1,4 +1,4 @@
-//! Files that are cut off, that lie, or that are of kinds that are not read.
+//! Tests of TIFF files that are truncated, inconsistent, or of unsupported kinds.
 
 use super::writer::{LITTLE, LONG, Leaf, SHORT, Writer};
 use super::{assert_refused, load_bytes};
@@ -102,7 +102,7 @@ fn a_part_that_was_never_written_is_empty() {
 
 #[test]
 fn the_same_bytes_over_and_over_are_no_strips() {
-    // 4 MiB that each of 64 strips claims: 256 MiB, of a page of 64 MiB.
+    // 4 MiB that all of 64 strips share: 128 MiB to read, for a page of 64 MiB.
     let bytes = vec![0x55; 4 << 20];
     let file = {
         let leaf = LITTLE.leaf([1 << 20, 64], 8, &bytes).with(tag::COMPRESSION, SHORT, &[8]);

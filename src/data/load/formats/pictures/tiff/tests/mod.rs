@@ -1,4 +1,4 @@
-//! TIFF files from the outside: what is read and what is refused.
+//! Tests that load TIFF files through the public interface: supported and refused ones.
 
 mod broken;
 mod numbers;
@@ -12,7 +12,7 @@ use crate::data::load::{Choice, LoadError};
 use crate::data::{Samples, Volume};
 
 fn load_chosen(bytes: &[u8], choice: Choice) -> Result<Volume, LoadError> {
-    // Without its ending: it is told by how it begins.
+    // Without its extension, so that it is detected by its first bytes.
     shared::load_bytes("stack.bin", bytes, choice)
 }
 

@@ -1,4 +1,4 @@
-//! Numbers of all types, however they are stored.
+//! Tests of all number types, storage layouts and compression schemes.
 
 use std::io::Write as _;
 
@@ -15,7 +15,7 @@ const WRITERS: [Writer; 4] = [
     Writer { endian: Endian::Big, is_big: true },
 ];
 
-/// Twelve pixels, 4 x 3, in the order of a writer.
+/// Encodes twelve pixels, 4 x 3, in the byte order of a writer.
 macro_rules! pixels {
     ($writer:expr, $values:expr) => {
         $values
@@ -74,7 +74,7 @@ fn packed(compression: u64, bytes: &[u8]) -> Vec<u8> {
     }
 }
 
-/// Rows of 16-bit numbers as differences, in the order of a writer.
+/// Encodes rows of 16-bit numbers with horizontal differencing, in the byte order of a writer.
 fn differences(writer: Writer, rows: &[u16], width: usize, samples: usize) -> Vec<u8> {
     let mut out = Vec::new();
     for row in rows.chunks(width * samples) {
@@ -85,7 +85,7 @@ fn differences(writer: Writer, rows: &[u16], width: usize, samples: usize) -> Ve
     out
 }
 
-/// Rows of floating point numbers as bytes by weight, as differences.
+/// Encodes rows of floating-point numbers with the floating-point predictor.
 fn by_weight(rows: &[f32], width: usize) -> Vec<u8> {
     let mut out = Vec::new();
     for row in rows.chunks(width) {
@@ -100,7 +100,7 @@ fn by_weight(rows: &[f32], width: usize) -> Vec<u8> {
 
 #[test]
 fn all_compressions_with_strips_and_tiles_and_predictors() {
-    // 5 x 4 pixels: the last strip of 3 rows has one, tiles of 4 x 3 reach beyond on two sides.
+    // 5 x 4 pixels: the last of the strips of 3 rows has one row, tiles of 4 x 3 reach beyond the page on two sides.
     let value = |x: u16, y: u16| 40_000u16.wrapping_add(x * 1_003).wrapping_add(y * 20_011);
     let all: Vec<u16> = (0..20).map(|at| value(at % 5, at / 5)).collect();
     let tile = |x0: u16, y0: u16| -> Vec<u16> {
@@ -147,7 +147,7 @@ fn all_compressions_with_strips_and_tiles_and_predictors() {
     }
 }
 
-/// Two pixels of red, green, blue.
+/// Page of two RGB pixels.
 fn colors(photometric: u64, samples: u64) -> Leaf {
     LITTLE
         .leaf([2, 1], 8, &[255, 0, 0, 10, 20, 30])
@@ -171,12 +171,12 @@ fn colours_are_luminance_or_a_component() {
         let choice = Choice { component: Some(3), ..Choice::default() };
         assert_refused(load_chosen(&file, choice), LoadErrorKind::BadInput, &["component 3", "its 3"]);
     }
-    // Numbers that are no colours are channels.
+    // Several samples without a colour space are channels.
     let file = LITTLE.file(&[colors(1, 3)]);
     assert_refused(load_bytes(&file), LoadErrorKind::BadInput, &["3 channels", "--channel"]);
     let choice = Choice { channel: Some(1), ..Choice::default() };
     assert_eq!(*load_chosen(&file, choice).unwrap().samples(), Samples::U8(vec![0, 20]));
-    // Grey and its opacity.
+    // Grey with opacity.
     let leaf = LITTLE.leaf([2, 1], 8, &[7, 255, 9, 0]).with(tag::SAMPLES, SHORT, &[2]);
     let file = LITTLE.file(&[leaf.with(tag::EXTRA_SAMPLES, SHORT, &[2])]);
     assert_eq!(samples_of(&file), Samples::U8(vec![7, 9]));
@@ -212,7 +212,7 @@ fn numbers_of_few_bits_are_widened() {
 
 #[test]
 fn labels_have_the_colours_of_their_table() {
-    // Red, green and blue of 256 numbers.
+    // Red, green and blue of 256 entries.
     let table: Vec<u64> = (0..768).map(|at| if at < 256 { 257 * at } else { 0 }).collect();
     let read = |number: fn(usize, usize) -> u8| {
         let pixels: Vec<u8> = (0..64 * 64).map(|at| number(at % 64, at / 64)).collect();
@@ -224,7 +224,7 @@ fn labels_have_the_colours_of_their_table() {
     let found = &labels.hints().labels;
     assert_eq!(found.get(90).and_then(|label| label.color), Some([90.0 / 255.0, 0.0, 0.0]));
     assert_eq!(found.get(91), None, "no voxel has it");
-    // What is no label map has numbers alone.
+    // An image that is not a label map keeps its numbers only.
     let smooth = read(|x, y| (x * 2 + y) as u8);
     assert!(smooth.hints().labels.is_empty() && smooth.remarks()[0].contains("table of colours"));
 }

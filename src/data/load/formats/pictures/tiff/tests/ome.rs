@@ -1,4 +1,4 @@
-//! OME-TIFF: which page is which slice, and how large voxels are.
+//! Tests of OME-TIFF: the order of pages, and the size of voxels.
 
 use super::writer::{LITTLE, Leaf};
 use super::{assert_refused, load_bytes, load_chosen, load_with};
@@ -112,7 +112,7 @@ fn pages_may_lie_in_files_beside() {
     }
     write(&set("c.tif"));
     assert_eq!(firsts(&load_with(&path, Choice::default()).unwrap()), [0.0, 31.0, 32.0]);
-    // The folder says the same.
+    // Opening the folder gives the same volume.
     assert_eq!(firsts(&load_with(folder.path(), Choice::default()).unwrap()), [0.0, 31.0, 32.0]);
     write(&set("missing.tif"));
     let volume = load_with(&path, Choice::default()).unwrap();
@@ -122,14 +122,14 @@ fn pages_may_lie_in_files_beside() {
     assert!(remarks.contains("\"missing.tif\" is not there"), "{remarks}");
     write(&set("../c.tif"));
     assert_refused(load_with(&path, Choice::default()), LoadErrorKind::BadInput, &["../c.tif", "FileName"]);
-    // XML in a file of its own.
+    // XML in a companion file.
     std::fs::write(folder.path().join("set.companion.ome"), set("c.tif")).unwrap();
     write(
         "<?xml version=\"1.0\"?><OME UUID=\"urn:uuid:own\"><BinaryOnly MetadataFile=\"set.companion.ome\"/></OME>",
     );
     let of_tiff = load_with(&path, Choice::default()).unwrap();
     assert_eq!(firsts(&of_tiff), [0.0, 31.0, 32.0]);
-    // Opened itself.
+    // The companion file itself is opened.
     let companion = folder.path().join("set.companion.ome");
     let of_xml = load_with(&companion, Choice::default()).unwrap();
     assert_eq!(firsts(&of_xml), [31.0, 32.0], "the file that was renamed is not known");
@@ -194,7 +194,7 @@ fn recordings_that_stopped_show_what_is_there() {
         assert_eq!(firsts(&volume), [0.0, 1.0, 2.0, 3.0, 4.0, 5.0], "{data}");
         assert!(volume.remarks()[0].contains("10 slices are said, and there are pages for the first 6"));
     }
-    // In the second of four times: two are offered, and the second is short.
+    // Stopped in the second of four time steps: two are offered, and the second is short.
     let stopped = file(&document(&image("a", &pixels(3, 1, 4), "")), 5);
     assert_refused(load_bytes(&stopped), LoadErrorKind::BadInput, &["2 time steps"]);
     let second = load_chosen(&stopped, Choice { frame: Some(1), ..Choice::default() }).unwrap();
@@ -206,16 +206,16 @@ fn recordings_that_stopped_show_what_is_there() {
         LoadErrorKind::BadInput,
         &["\"3\" is none of its 2 time steps"],
     );
-    // Of one slice over time what was recorded is its depth.
+    // For one slice over time, the recorded steps are its depth.
     let times = load_bytes(&file(&document(&image("a", &pixels(1, 1, 9), "")), 4)).unwrap();
     assert_eq!(firsts(&times), [0.0, 1.0, 2.0, 3.0]);
-    // A gap between keeps its place.
+    // A gap in between keeps its place.
     let data: String = [0, 1, 3].map(|z| format!("<TiffData FirstZ=\"{z}\" IFD=\"{z}\"/>")).concat();
     let gap = load_bytes(&file(&document(&image("a", &pixels(5, 1, 1), &data)), 4)).unwrap();
     assert_eq!(firsts(&gap), [0.0, 1.0, 0.0, 3.0]);
     let remarks = gap.remarks().join("; ");
     assert!(remarks.contains("slices 2: they are empty") && remarks.contains("the first 4"), "{remarks}");
-    // Nothing at all for what is chosen, and what there is.
+    // No page at all for the chosen channel; the error lists the others.
     let data: String =
         [0, 1].map(|z| format!("<TiffData FirstC=\"1\" FirstZ=\"{z}\" IFD=\"{z}\"/>")).concat();
     let other = file(&document(&image("a", &pixels(2, 2, 1), &data)), 2);
@@ -267,7 +267,7 @@ fn xml_that_would_take_long_is_refused() {
 
 #[test]
 fn a_recording_of_many_planes_is_read() {
-    // Each plane with all that the schema knows of it.
+    // Each plane with all attributes of the schema.
     let planes = (0..20_000)
         .map(|at| {
             format!(

@@ -1,4 +1,4 @@
-//! Files that say the shape of their arrays, as tifffile writes them.
+//! Tests of files that give the shape of their arrays, as tifffile writes them.
 
 use super::writer::{LITTLE, LONG, Leaf, SHORT};
 use super::{assert_refused, load_bytes, load_chosen};
@@ -6,7 +6,7 @@ use crate::data::Volume;
 use crate::data::load::formats::pictures::tiff::file::page::tag;
 use crate::data::load::{Choice, LoadErrorKind};
 
-/// Pages of 2 x 1 pixels with their number as value, of which the first says something.
+/// Creates pages of 2 x 1 pixels whose value is their number, the first with a description.
 fn array(json: &str, numbers: std::ops::Range<u8>) -> Vec<Leaf> {
     let mut pages: Vec<Leaf> = numbers.map(|number| LITTLE.leaf([2, 1], 8, &[number, number])).collect();
     if let Some(first) = pages.first_mut() {
@@ -57,7 +57,7 @@ fn axes_are_channels_times_and_slices() {
     }
     let bytes = file("shape=(2, 3, 1, 2)", 6);
     assert_eq!(firsts(&load_chosen(&bytes, frame(1)).unwrap()), [3.0, 4.0, 5.0]);
-    // Five axes.
+    // Five axes, with and without letters.
     for (axes, both) in [("\"axes\": \"TCZYX\", ", true), ("", false)] {
         let bytes = file(&format!("{{{axes}\"shape\": [2, 2, 3, 1, 2]}}"), 12);
         let choice = Choice { frame: Some(1), ..channel(0) };
@@ -93,7 +93,7 @@ fn colours_and_samples_are_parts_of_pages() {
     let bytes = color("{\"shape\": [2, 2, 1, 2, 3], \"axes\": \"TZYXS\"}");
     let volume = load_chosen(&bytes, Choice { component: Some(0), ..frame(1) }).unwrap();
     assert_eq!(firsts(&volume), [20.0, 30.0]);
-    // Planes of what several detectors have seen.
+    // Channels of several detectors in separate planes.
     let planes = |number: u8| {
         let leaf = LITTLE.leaf([2, 1], 8, &[]).with(tag::SAMPLES, SHORT, &[2]).with(tag::PLANAR, SHORT, &[2]);
         leaf.with(tag::BITS, SHORT, &[8, 8]).with_parts(vec![vec![number; 2], vec![number + 5; 2]])
@@ -118,7 +118,7 @@ fn several_arrays_are_series() {
     assert_refused(load_chosen(&bytes, series(1)), LoadErrorKind::BadInput, &["2 channels"]);
     let choice = Choice { channel: Some(1), ..series(1) };
     assert_eq!(firsts(&load_chosen(&bytes, choice).unwrap()), [12.0, 13.0]);
-    // Pages that were written one by one are slices, as they were.
+    // Pages that were written one by one are slices, as without descriptions.
     let single = |number: u8| array("{\"shape\": [1, 2]}", number..number + 1);
     let volume = load_bytes(&LITTLE.file(&[single(0), single(1), single(2)].concat())).unwrap();
     assert_eq!((firsts(&volume), volume.remarks().len()), (vec![0.0, 1.0, 2.0], 0));
@@ -165,7 +165,7 @@ fn recordings_that_stopped_and_shapes_that_lie() {
     assert_refused(late, LoadErrorKind::BadInput, &["\"1\" is none of its 1 time steps"]);
     let none = load_chosen(&file("{\"shape\": [2, 4, 1, 2], \"axes\": \"RZYX\"}", 3), series(1));
     assert_refused(none, LoadErrorKind::BadInput, &["8 pages are said, and 3 are there"]);
-    // What no page is a part of says nothing: pages are slices.
+    // A shape that the pages do not match is ignored: pages are slices.
     for shape in
         ["[3, 2, 3]", "[0, 1, 2]", "[3, 1, 3]", "[2]", "[18446744073709551615, 18446744073709551615, 1, 2]"]
     {

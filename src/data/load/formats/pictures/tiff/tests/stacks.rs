@@ -1,4 +1,4 @@
-//! Pages that are slices: plain ones, and those that programs for microscopes describe.
+//! Tests of pages that are slices: without metadata, and with that of microscope software.
 
 use super::writer::{LITTLE, LONG, Leaf, SHORT};
 use super::{assert_refused, load_bytes, load_chosen};
@@ -23,7 +23,7 @@ fn described(mut pages: Vec<Leaf>, description: &str) -> Vec<u8> {
     LITTLE.file(&pages)
 }
 
-/// The first pixel of each slice.
+/// First pixel of each slice.
 fn firsts(volume: &Volume) -> Vec<f64> {
     (0..volume.dims()[2]).map(|z| volume.value(0, 0, z)).collect()
 }
@@ -98,7 +98,7 @@ fn what_imagej_leaves_out_is_what_it_takes_for_granted() {
     assert_eq!(*signed.samples(), Samples::I16(vec![-5, -3, 15, 17]));
     assert_eq!((signed.hints().window, signed.hints().unit()), (Some([-3.0, 17.0]), None));
     assert_eq!(of("cf=0\nc0=0\nc1=1\nvunit=HU\n").hints().unit(), Some("HU"));
-    // Counts that do not fit are not believed.
+    // Counts that do not match the pages are ignored.
     let volume = load_bytes(&described(pages(3), "ImageJ=1\nimages=99\nslices=50\nchannels=2\n")).unwrap();
     assert!(volume.dims()[2] == 3 && volume.remarks()[0].contains("50 slices"));
 }

@@ -1,9 +1,9 @@
-//! TIFF files of a few pixels, byte by byte.
+//! Writer of TIFF files of a few pixels, for tests.
 
 use crate::data::load::Endian;
 use crate::data::load::formats::pictures::tiff::file::page::tag;
 
-/// Types of values.
+/// Types of directory values.
 pub(super) const ASCII: u16 = 2;
 const BYTE: u16 = 1;
 pub(super) const SHORT: u16 = 3;
@@ -11,7 +11,7 @@ pub(super) const LONG: u16 = 4;
 const RATIONAL: u16 = 5;
 const LONG8: u16 = 16;
 
-/// An entry: type, count, and the bytes of its values.
+/// Directory entry: type, count, and the bytes of its values.
 #[derive(Clone)]
 struct Field {
     kind: u16,
@@ -19,7 +19,7 @@ struct Field {
     bytes: Vec<u8>,
 }
 
-/// A page, as it is described and as it is stored.
+/// Page to write: its directory entries and its data.
 #[derive(Clone)]
 pub(super) struct Leaf {
     fields: Vec<(u16, Field)>,
@@ -29,7 +29,7 @@ pub(super) struct Leaf {
     is_big: bool,
 }
 
-/// A file in the making.
+/// Byte order and flavour (classic or `BigTIFF`) of a file to write.
 #[derive(Clone, Copy)]
 pub(super) struct Writer {
     pub(super) endian: Endian,
@@ -39,7 +39,7 @@ pub(super) struct Writer {
 pub(super) const LITTLE: Writer = Writer { endian: Endian::Little, is_big: false };
 
 impl Writer {
-    /// A page of one strip.
+    /// Creates a page of one strip.
     pub(super) fn leaf(self, [width, height]: [u64; 2], bits: u64, pixels: &[u8]) -> Leaf {
         let leaf = Leaf {
             fields: Vec::new(),
@@ -61,7 +61,7 @@ impl Writer {
         }
     }
 
-    /// The file.
+    /// Writes a file of these pages.
     pub(super) fn file(self, leaves: &[Leaf]) -> Vec<u8> {
         let place = if self.is_big { 8 } else { 4 };
         let mut file = match self.endian {
@@ -73,7 +73,7 @@ impl Writer {
         } else {
             file.extend(self.number(42, 2));
         }
-        // Where the place of the next directory is to be written.
+        // Where the offset of the next directory is to be written.
         let mut link = file.len();
         file.extend(vec![0; place]);
         for leaf in leaves {
@@ -91,7 +91,7 @@ impl Writer {
             };
             let mut leaf = leaf.clone();
             for (tag, numbers) in [(at, offsets), (of, counts)] {
-                // One that the test has put there itself stays.
+                // An entry that the test has set itself is kept.
                 if leaf.fields.iter().all(|(found, _)| *found != tag) {
                     leaf = leaf.with(tag, kind, &numbers);
                 }
@@ -131,7 +131,7 @@ impl Leaf {
         self
     }
 
-    /// Whole numbers.
+    /// Sets an entry of integers.
     pub(super) fn with(self, tag: u16, kind: u16, values: &[u64]) -> Self {
         let size = match kind {
             BYTE => 1,
@@ -155,7 +155,7 @@ impl Leaf {
         self.put(tag, Field { kind: ASCII, count: bytes.len() as u64, bytes })
     }
 
-    /// Another text of a tag that the page has already, before that.
+    /// Inserts another text of a tag before the one that the page has.
     pub(super) fn with_second_text(mut self, tag: u16, text: &str) -> Self {
         let bytes = [text.as_bytes(), &[0]].concat();
         let field = Field { kind: ASCII, count: bytes.len() as u64, bytes };

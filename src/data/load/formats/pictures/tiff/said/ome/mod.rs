@@ -1,7 +1,7 @@
-//! What OME-TIFF says of its images: XML in the description of the first page.
+//! OME-TIFF metadata: XML in the description of the first page.
 //!
-//! After the definition at <https://docs.openmicroscopy.org/ome-model/latest/ome-tiff/specification.html>. Pages may lie in
-//! several files beside each other; all of them, or one file of XML, say which.
+//! After the specification at <https://docs.openmicroscopy.org/ome-model/latest/ome-tiff/specification.html>. Pages
+//! may lie in several files beside each other; the assignment is repeated in all of them, or in one XML file.
 
 mod pages;
 
@@ -22,15 +22,15 @@ use crate::data::load::{Choice, Dimension, LoadError, Offer};
 use crate::data::{Hints, Modality, plain, xml};
 use pages::Pages;
 
-/// Bytes of XML that are read at most: of ten thousand files it has a few million.
+/// Maximum length of the XML, in bytes: for ten thousand files it has a few million.
 pub(in super::super) const MOST_XML_BYTES: u64 = xml::MOST_BYTES as u64;
 
-/// Images that are offered at most: a plate of 1536 wells with ten fields each has as many.
+/// Maximum number of images that a file may offer: a plate of 1536 wells with ten fields each.
 const MOST_IMAGES: usize = 1 << 14;
 
-/// Whether a description is OME's XML.
+/// Returns true if a description is OME-XML.
 pub(in super::super) fn is_ome(description: &str) -> bool {
-    // After a byte order mark, a declaration and a comment, which writers put there.
+    // After a byte order mark, a declaration and a comment, which some writers put first.
     let head: String = description.chars().take(2000).collect();
     head.trim_start_matches('\u{feff}').trim_start().starts_with('<')
         && (head.contains("<OME") || head.contains(":OME"))
@@ -48,24 +48,26 @@ pub(super) fn children<'a, 'i>(node: Node<'a, 'i>, name: &str) -> impl Iterator<
     node.children().filter(move |child| child.tag_name().name() == name)
 }
 
-/// A number of an attribute.
+/// Parses an attribute as a number.
 pub(super) fn number<T: std::str::FromStr>(node: Node<'_, '_>, name: &str) -> Option<T> {
     node.attribute(name)?.trim().parse().ok()
 }
 
-/// Voxels, channels and time steps of an image.
+/// Numbers of voxels, channels and time steps of an image.
 pub(super) struct Sizes {
     pub(super) dims: [u64; 3],
-    /// Channels of pages: where one has colours, it is one.
+    /// Number of channels of pages: a colour counts as one.
     pub(super) channels: usize,
     pub(super) frames: usize,
-    /// Which of z, channel and time go on first, by their letters in `DimensionOrder`.
+    /// Order of z, channel and time in the file, fastest first, by the letters of `DimensionOrder`.
     pub(super) order: [char; 3],
 }
 
 impl Sizes {
+    /// Reads the sizes from the attributes of `Pixels`; `samples` is the number of samples per pixel.
+    ///
     /// # Errors
-    /// `BadInput` for sizes that cannot be.
+    /// `BadInput` for implausible sizes.
     fn of(attempt: Attempt<'_>, pixels: Node<'_, '_>, samples: usize) -> Result<Self, LoadError> {
         let size = |name: &str| {
             number::<u64>(pixels, name).filter(|size| (1..=1 << 31).contains(size)).ok_or_else(|| {
@@ -74,7 +76,7 @@ impl Sizes {
             })
         };
         let dims = [size("SizeX")?, size("SizeY")?, size("SizeZ")?];
-        // The count of channels is of their numbers: a colour is three.
+        // `SizeC` counts samples: a colour is three.
         let channels = (size("SizeC")? as usize).div_ceil(samples.max(1));
         let letters: Vec<char> = pixels.attribute("DimensionOrder").unwrap_or("XYZCT").chars().collect();
         let order = match letters.as_slice() {
@@ -90,7 +92,7 @@ impl Sizes {
     }
 }
 
-/// The stack of a file with such a description.
+/// Builds the stack of a file with such a description.
 pub(in super::super) fn stack(
     attempt: Attempt<'_>,
     tiff: &Tiff,
@@ -99,7 +101,7 @@ pub(in super::super) fn stack(
 ) -> Result<Stack, LoadError> {
     let document = parsed(attempt, description)?;
     let root = document.root_element();
-    // The XML proper may be in a file of its own, which all files of a set name.
+    // The full XML may be in a companion file, which all files of a set name.
     if let Some(name) = child(root, "BinaryOnly").and_then(|node| node.attribute("MetadataFile")) {
         let path = beside::resolve(attempt, "MetadataFile", name)?;
         let companion = Attempt { what: "read the OME-XML of the volume", path: &path };
@@ -110,14 +112,14 @@ pub(in super::super) fn stack(
     of_root(attempt, tiff, root, choice)
 }
 
-/// The first file that is there of those with the pages of the image that is meant, by a file of XML beside them.
+/// First existing file with pages of the chosen image, by a companion XML file.
 ///
 /// # Errors
-/// `BadInput` where it names none or one that may not be read, `Io` where none is there.
+/// `BadInput` where it names none, or one that must not be read; `Io` where none exists.
 pub(crate) fn first_file(attempt: Attempt<'_>, xml: &str, choice: &Choice) -> Result<PathBuf, LoadError> {
     let document = parsed(attempt, xml)?;
     let [_, pixels] = image_of(attempt, document.root_element(), choice)?;
-    // Of more that are not there none would be found behind them.
+    // If so many files are missing, the others will be as well.
     const MOST_LOOKED_FOR: usize = 1 << 12;
     let names = children(pixels, "TiffData").flat_map(|data| children(data, "UUID"));
     let mut names: Vec<&str> = names.filter_map(|uuid| uuid.attribute("FileName")).collect();
@@ -135,13 +137,13 @@ pub(crate) fn first_file(attempt: Attempt<'_>, xml: &str, choice: &Choice) -> Re
     }))
 }
 
-/// Whether a name says nothing: programs that ask for none count images, as in `Image0` and `Image:0`.
+/// Returns true for a generic name: some programs just count images, as in `Image0` and `Image:0`.
 fn is_counted(name: &str) -> bool {
     let number = name.strip_prefix("Image").unwrap_or(name).trim_start_matches([':', ' ', '_']);
     name.is_empty() || name.starts_with("Image") && number.bytes().all(|byte| byte.is_ascii_digit())
 }
 
-/// The text of a file of XML.
+/// Reads the text of a companion XML file.
 pub(crate) fn companion_text(attempt: Attempt<'_>) -> Result<String, LoadError> {
     use std::io::Read as _;
     let input = crate::data::load::reading::input::Input::open(attempt)?;
@@ -151,7 +153,7 @@ pub(crate) fn companion_text(attempt: Attempt<'_>) -> Result<String, LoadError> 
     Ok(String::from_utf8_lossy(&text).into_owned())
 }
 
-/// The image that is meant, and its pixels.
+/// Finds the element of the chosen image, and its `Pixels`.
 fn image_of<'a, 'i>(
     attempt: Attempt<'_>,
     root: Node<'a, 'i>,
@@ -177,12 +179,12 @@ fn image_of<'a, 'i>(
     Ok(images.swap_remove(attempt.chosen(choice, Dimension::Series, offers)?))
 }
 
-/// The name of an image.
+/// Name attribute of an image.
 fn named<'a>(image: Node<'a, '_>) -> &'a str {
     image.attribute("Name").unwrap_or_default()
 }
 
-/// Name of a channel: its own, its dye, or the light that it sends.
+/// Name of a channel: its own, its dye, or its emission wavelength.
 fn channel_name(channel: Node<'_, '_>) -> String {
     let said = |name: &str| channel.attribute(name).map(str::trim).filter(|text| !text.is_empty());
     let wavelength = || {
@@ -255,7 +257,8 @@ fn of_root(
     })
 }
 
-/// Pages must be as large as the XML says; those of other files are compared to the first when they are read.
+/// Checks that pages have the size that the XML announces. Those of other files are compared to the first when they
+/// are read.
 fn check_size(
     attempt: Attempt<'_>,
     tiff: &Tiff,
@@ -280,7 +283,7 @@ fn check_size(
 fn place(pixels: Node<'_, '_>) -> Placement {
     let length = |axis: &str| {
         let length = number::<f64>(pixels, &format!("PhysicalSize{axis}"))?;
-        // The model's own default.
+        // Default unit of the data model.
         let unit_mm =
             millimetres(pixels.attribute(format!("PhysicalSize{axis}Unit").as_str()).unwrap_or("µm"))?;
         Some((length * unit_mm, unit_mm)).filter(|(length, _)| length.is_finite() && *length > 0.0)
@@ -288,18 +291,18 @@ fn place(pixels: Node<'_, '_>) -> Placement {
     if let (Some((x, unit_mm)), Some((y, _)), Some((z, _))) = (length("X"), length("Y"), length("Z")) {
         return Placement::spaced([x, y, z]).said_in(unit_mm);
     }
-    // Two of them, as a picture without depth has them, are nothing that cannot be.
+    // Two of the three, as in a picture without depth, are not an error.
     let all = ["PhysicalSizeX", "PhysicalSizeY", "PhysicalSizeZ"];
     let is_wrong = all.iter().all(|size| pixels.has_attribute(*size));
     let remark = is_wrong.then_some("its PhysicalSize cannot be: how large voxels are is not known");
     Placement::unknown().remarked(remark)
 }
 
-/// What is said of how it was recorded.
+/// Acquisition metadata: modality, channel name and dye.
 fn hints(root: Node<'_, '_>, image: Node<'_, '_>, pixels: Node<'_, '_>, channel: usize) -> Hints {
     let mut hints = Hints::default();
     let channels: Vec<Node<'_, '_>> = children(pixels, "Channel").collect();
-    // Wavelengths, dyes and objectives are of light alone.
+    // Wavelengths, dyes and objectives exist only in light microscopy.
     const OF_LIGHT: [&str; 4] = ["EmissionWavelength", "ExcitationWavelength", "Fluor", "IlluminationType"];
     let is_light = channels.iter().any(|channel| OF_LIGHT.iter().any(|name| channel.has_attribute(*name)))
         || child(image, "ObjectiveSettings").is_some()
@@ -315,7 +318,7 @@ fn hints(root: Node<'_, '_>, image: Node<'_, '_>, pixels: Node<'_, '_>, channel:
     hints
 }
 
-/// A file of a set.
+/// Resolves the path of a file of the set.
 pub(super) fn beside_of(attempt: Attempt<'_>, name: &str) -> Result<PathBuf, LoadError> {
     beside::resolve(attempt, "FileName", name)
 }

@@ -1,4 +1,4 @@
-//! Which page of which file an OME-TIFF has for a slice: its elements `TiffData`.
+//! Assignment of OME-TIFF planes to pages and files: the elements `TiffData`.
 
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -12,31 +12,31 @@ use super::{Sizes, beside_of, children, number};
 use crate::data::attempt::{Attempt, quoted};
 use crate::data::load::LoadError;
 
-/// The page of every slice, channel and time that there is one for.
+/// Page of every combination of slice, channel and time that has one.
 pub(super) struct Pages<'a> {
-    /// By the place in `DimensionOrder`.
+    /// File name and page, by the plane's index in `DimensionOrder`.
     places: HashMap<usize, (&'a str, usize)>,
-    /// Slices, channels and times, and how far one goes on in the order.
+    /// Index step per slice, channel and time step.
     strides: [usize; 3],
     sizes: [usize; 3],
-    /// What the file that is opened is called in the XML.
+    /// Name of the opened file in the XML.
     own: Option<&'a str>,
-    /// Pages of that file.
+    /// Number of pages of the opened file.
     own_count: usize,
 }
 
-/// Pages of some slices.
+/// Pages of a list of slices.
 pub(super) struct SlicePages {
-    /// None for those that have no page.
+    /// Page of each slice; `None` for those without a page.
     pub(super) slices: Vec<Option<Slice>>,
-    /// The files that they lie in beside the one that is opened.
+    /// Files that they lie in, apart from the opened one.
     pub(super) beside: Vec<PathBuf>,
-    /// Remark on files that are not there.
+    /// Remark on missing files.
     pub(super) lost_files: Option<String>,
 }
 
 impl<'a> Pages<'a> {
-    /// Goes through what is said of pages. `own_pages` are those of the file that is opened.
+    /// Reads the `TiffData` elements. `own_pages` is the number of pages of the opened file.
     pub(super) fn of(
         attempt: Attempt<'_>,
         root: Node<'a, '_>,
@@ -65,12 +65,12 @@ impl<'a> Pages<'a> {
             }
             let page = number::<usize>(element, "IFD");
             let count = number::<usize>(element, "PlaneCount");
-            // All pages where nothing is said, one where the first is.
+            // All pages where neither is given, one where only the first is.
             let count = count.unwrap_or(if page.is_some() { 1 } else { own_pages.max(1) });
             let start = (0..3).map(|axis| first[axis] * strides[axis]).sum::<usize>();
             let file = children(element, "UUID").find_map(|uuid| uuid.attribute("FileName")).unwrap_or("");
             let count = count.min(all.saturating_sub(start));
-            // Also where the same pages are said again and again.
+            // Counts repetitions of the same pages, too.
             said = said.saturating_add(count);
             if said > MOST_PAGES {
                 let why = format!("there are more than {MOST_PAGES} pages");
@@ -87,7 +87,7 @@ impl<'a> Pages<'a> {
         Ok(Self { places: pages, strides, sizes: counts, own, own_count: own_pages })
     }
 
-    /// The pages of some slices, channels and times.
+    /// Finds the pages of some slices, given by slice, channel and time index.
     ///
     /// # Errors
     /// `BadInput` where the name of a file leads out of the folder.
@@ -129,12 +129,12 @@ impl<'a> Pages<'a> {
         Ok(SlicePages { slices, beside, lost_files })
     }
 
-    /// Time steps up to the last that a page is said for.
+    /// Number of time steps up to the last that has a page.
     pub(super) fn frames(&self) -> usize {
         self.count(2)
     }
 
-    /// Channels up to the last that a page is said for.
+    /// Number of channels up to the last that has a page.
     pub(super) fn channels(&self) -> usize {
         self.count(1)
     }
@@ -145,15 +145,15 @@ impl<'a> Pages<'a> {
         places.map(|(at, _)| along(at) + 1).max().unwrap_or(self.sizes[axis])
     }
 
-    /// True where a page is there, as far as is known without opening another file.
+    /// True if a page exists, judged without opening other files.
     fn may_be_there(&self, &(name, page): &(&str, usize)) -> bool {
         let is_own = name.is_empty() || Some(name) == self.own;
         !is_own || page < self.own_count
     }
 
-    /// Error for a channel and a time that have no page at all.
+    /// Error for a combination of channel and time without any page.
     pub(super) fn nothing(&self, attempt: Attempt<'_>, channel: usize, frame: usize) -> LoadError {
-        // As many as a line has room for.
+        // As many as fit into a line.
         const MOST_LISTED: usize = 8;
         let mut there: Vec<[usize; 2]> = self
             .places
@@ -188,8 +188,8 @@ fn axis_of(letter: char) -> usize {
     }
 }
 
-/// What the file that is opened is called in the XML: its own name, or the only one there is where it was renamed since,
-/// or the one whose mark is that of the file.
+/// Name of the opened file in the XML: its own name, or that with the UUID of the file, or the only name, since the
+/// file may have been renamed.
 fn own_name<'a>(attempt: Attempt<'_>, root: Node<'a, '_>, elements: &[Node<'a, '_>]) -> Option<&'a str> {
     let marks: Vec<(&str, Option<&str>)> = elements
         .iter()

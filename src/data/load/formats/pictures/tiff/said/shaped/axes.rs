@@ -1,9 +1,9 @@
-//! Meaning of the axes of an array that lie before those of a page: slices, channels, time steps, or series.
+//! Meaning of those axes of an array that precede the axes of a page: slices, channels, time steps, or series.
 
 use super::super::super::file::directory::MOST_PAGES;
 use super::super::super::file::page::Page;
 
-/// An axis of an array.
+/// Axis of an array, with its size and letter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct ArrayAxis {
     size: u64,
@@ -11,30 +11,30 @@ struct ArrayAxis {
     letter: char,
 }
 
-/// Axis of pages, with the pages that one step along it is.
+/// Axis of pages: its size, and the number of pages per step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct PageStride {
     pub(super) size: usize,
     pub(super) pages: usize,
 }
 
-/// Axes of pages by what they stand for.
+/// Axes of pages by their meaning.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct PageAxes {
     pub(super) slices: Option<PageStride>,
     pub(super) channels: Option<PageStride>,
     pub(super) frames: Option<PageStride>,
-    /// The others, the slowest first.
+    /// All other axes, slowest first.
     pub(super) series: Vec<PageStride>,
-    /// True where there are several, and nothing was said of what they stand for.
+    /// True if there are several axes, and their meaning is only assumed.
     pub(super) is_assumed: bool,
-    /// Pages of all of them.
+    /// Number of pages of the whole array.
     pub(super) pages: usize,
 }
 
 impl PageAxes {
-    /// The axes of an array whose last ones are those of a page. `None` where a page is no such part of it, or where there
-    /// would be more pages than any file has.
+    /// Interprets the shape of an array whose last axes are those of a page. `None` where the page does not match
+    /// them, or where the array would have more pages than any file.
     pub(super) fn new(shape: &[u64], letters: &str, page: &Page) -> Option<Self> {
         let letters: Vec<char> = letters.chars().map(|letter| letter.to_ascii_uppercase()).collect();
         let is_named = letters.len() == shape.len();
@@ -45,7 +45,7 @@ impl PageAxes {
         } else {
             [(page.height, 'Y'), (page.width, 'X'), (samples, 'S')]
         };
-        // Axes of one step are there or not, as a program likes.
+        // Axes of length 1 may be present or not.
         let all: Vec<ArrayAxis> = (0..shape.len())
             .map(|at| ArrayAxis { size: shape[at], letter: letter(at) })
             .filter(|axis| axis.size != 1)
@@ -54,7 +54,7 @@ impl PageAxes {
         let outer = all.len().checked_sub(of_page.len())?;
         let (outer, inner) = all.split_at(outer);
         let is_same = inner.iter().zip(&of_page).all(|(axis, &(size, letter))| {
-            // What several detectors have seen may be the samples of a page.
+            // Channels may be the samples of a page.
             let is_meant =
                 axis.letter == letter || axis.letter == '?' || (axis.letter == 'C' && letter == 'S');
             axis.size == size && is_meant
@@ -62,7 +62,7 @@ impl PageAxes {
         if is_same { Self::of_pages(outer) } else { None }
     }
 
-    /// The axes of so many pages, the slowest first.
+    /// Interprets the axes of pages, slowest first.
     fn of_pages(outer: &[ArrayAxis]) -> Option<Self> {
         let mut axes = Self { pages: 1, ..Self::default() };
         let mut strides = Vec::new();
@@ -75,7 +75,7 @@ impl PageAxes {
         let mut letters: Vec<char> = outer.iter().map(|axis| axis.letter).collect();
         if letters.iter().all(|&letter| letter == '?') {
             axes.is_assumed = letters.len() > 1;
-            // As arrays of NumPy are taken: time, channel, z.
+            // The usual order of NumPy arrays: time, channel, z.
             for (letter, assumed) in
                 letters.iter_mut().rev().zip(['Z', if outer.len() > 2 { 'C' } else { 'T' }, 'T'])
             {
@@ -100,12 +100,12 @@ impl PageAxes {
         Some(axes)
     }
 
-    /// Number of series.
+    /// Number of series: product of the remaining axes.
     pub(super) fn series_count(&self) -> usize {
         self.series.iter().map(|stride| stride.size).product()
     }
 
-    /// The first page of a series.
+    /// Index of the first page of a series.
     pub(super) fn series_page(&self, series: usize) -> usize {
         let mut rest = series;
         let mut page = 0;
@@ -117,8 +117,8 @@ impl PageAxes {
     }
 }
 
-/// The axis along which slices follow each other: that of depth, or else the fastest of which it is not said that it is
-/// another one; of channels and times none.
+/// Index of the axis along which slices lie: depth, or else the fastest axis that is not explicitly another one;
+/// never channels or times.
 fn slice_axis(letters: &[char]) -> Option<usize> {
     let is_other = |letter: char| matches!(letter, 'C' | 'T' | 'E' | 'W' | 'H' | 'L' | 'S');
     let last = |is: &dyn Fn(char) -> bool| letters.iter().rposition(|&letter| is(letter));

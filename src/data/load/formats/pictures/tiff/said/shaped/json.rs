@@ -1,36 +1,36 @@
-//! The words of tifffile: the shape of an array, as JSON or, of versions before 2017, as `shape=(2, 8, 7, 8)`.
+//! Metadata of tifffile: the shape of an array, as JSON or, in versions before 2017, as `shape=(2, 8, 7, 8)`.
 
 use serde::Deserialize;
 use serde_json::Value;
 
-/// Bytes of a description that are read: programs put what they know beside the shape.
+/// Maximum length of a description, in bytes: programs add metadata of their own to the shape.
 pub(super) const MOST_BYTES: u64 = 1 << 20;
 
-/// Words on a series of pages.
+/// Description of a series of pages.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(default)]
 pub(super) struct ShapeDescription {
-    /// Sizes of the array, the slowest axis first.
+    /// Sizes of the array, slowest axis first.
     pub(super) shape: Vec<u64>,
-    /// A letter for each axis.
+    /// Letter of each axis, in the order of `shape`.
     pub(super) axes: Option<String>,
     pub(super) name: Option<String>,
-    /// True where one page stands for all.
+    /// True if one page stands for all.
     pub(super) truncated: bool,
-    /// The distance of slices.
+    /// Distance between slices, in `unit`.
     pub(super) spacing: Option<f64>,
-    /// The unit of lengths.
+    /// Name of the unit of length.
     pub(super) unit: Option<String>,
-    /// Names of channels, as OME has them.
+    /// Names of channels in OME's form.
     #[serde(rename = "Channel")]
     channel: Value,
-    /// Names of channels or pages, as `ImageJ` has them.
+    /// Names of channels or pages in `ImageJ`'s form.
     #[serde(rename = "Labels")]
     labels: Value,
 }
 
 impl ShapeDescription {
-    /// Words of a description; `None` where it is another one.
+    /// Parses a description; `None` for any other text.
     pub(super) fn parse(description: &str) -> Option<Self> {
         let description = description.trim();
         if let Some(old) = description.strip_prefix("shape=(") {
@@ -42,7 +42,7 @@ impl ShapeDescription {
         if !description.starts_with('{') || !description.contains("\"shape\"") {
             return None;
         }
-        // With words of other types than expected the shape alone.
+        // If other members have unexpected types, only shape and axes are used.
         let words = serde_json::from_str(description).ok().or_else(|| {
             let value: Value = serde_json::from_str(description).ok()?;
             let shape = serde_json::from_value(value.get("shape")?.clone()).ok()?;
@@ -52,7 +52,7 @@ impl ShapeDescription {
         words.filter(|words: &Self| !words.shape.is_empty())
     }
 
-    /// Names of so many channels, where they are said.
+    /// Names of the channels, if there are exactly `channels` of them; otherwise empty.
     pub(super) fn channel_names(&self, channels: usize) -> Vec<String> {
         let texts = |value: &Value| -> Vec<String> {
             let all = value.as_array().map_or(&[][..], Vec::as_slice);

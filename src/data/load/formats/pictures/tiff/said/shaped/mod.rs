@@ -1,5 +1,5 @@
-//! Words of tifffile on its pages, and of programs that write with it (napari, scikit-image): the shape of an array, and
-//! perhaps a letter for each of its axes. Files may hold several arrays, each with a shape on its first page.
+//! Metadata that tifffile and programs based on it (napari, scikit-image) write: the shape of an array, possibly with
+//! a letter for each axis. A file may hold several arrays, each with the shape on its first page.
 //!
 //! After tifffile's own reader (`TiffFile._series_shaped`, <https://github.com/cgohlke/tifffile>).
 
@@ -20,20 +20,21 @@ use crate::data::load::{Choice, Dimension, LoadError, Offer};
 use axes::{PageAxes, PageStride};
 use json::{MOST_BYTES, ShapeDescription};
 
-/// Series of a file that are offered at most: more than any list can be chosen from.
+/// Maximum number of series that a file may offer: more than can be chosen from a list.
 const MOST_SERIES: usize = 1 << 16;
 
-/// An array in a file.
+/// Array of pages in a file.
 struct ShapedArray {
     words: ShapeDescription,
     axes: PageAxes,
-    /// The page of its first slice.
+    /// Index of its first page.
     first: usize,
-    /// Pages of it that are there.
+    /// Number of its pages that exist.
     pages: usize,
 }
 
-/// The arrays of a file; none where it is not said what its pages are, or where that says nothing: each is an array.
+/// Arrays of a file; empty where pages have no such description, or where it adds nothing because each page is an
+/// array.
 fn arrays(tiff: &mut Tiff, remarks: &mut Vec<String>) -> Vec<ShapedArray> {
     let mut arrays: Vec<ShapedArray> = Vec::new();
     let mut first = 0;
@@ -56,17 +57,17 @@ fn arrays(tiff: &mut Tiff, remarks: &mut Vec<String>) -> Vec<ShapedArray> {
             break;
         };
         let is_like = |other: &Page| other.is_like(&page) && other.descriptions == [None; 2];
-        // A page that begins an array of its own ends this one, whatever its shape promises.
+        // A page that begins an array of its own ends this one, whatever its shape announces.
         let others = tiff.pages[first + 1..].iter().take(axes.pages - 1);
         let pages = if words.truncated { 1 } else { 1 + others.take_while(|other| is_like(other)).count() };
         arrays.push(ShapedArray { words, axes, first, pages });
         first += pages;
     }
-    // Pages that were written one by one are slices, as all pages are of which nothing is said.
+    // Pages that were written one by one are slices, as pages without descriptions are.
     if arrays.iter().all(|array| array.axes.pages == 1) { Vec::new() } else { arrays }
 }
 
-/// The stack of a file that says the shape of its arrays; `None` where it says nothing that plain pages do not.
+/// Stack of a file with array shapes; `None` where they add nothing to plain pages.
 pub(in super::super) fn stack(
     attempt: Attempt<'_>,
     tiff: &mut Tiff,
@@ -80,7 +81,7 @@ pub(in super::super) fn stack(
     let [at, series] = chosen_array(attempt, tiff, &arrays, choice)?;
     let ShapedArray { words, axes, first, pages } = arrays.swap_remove(at);
     let page = tiff.pages[first];
-    // One page for all, as long as what is said.
+    // One page stands for all, whose data are contiguous.
     let follow = (pages == 1 && axes.pages > 1 && page.is_bare())
         .then(|| contiguous(attempt, tiff, &page, axes.pages, "shape"));
     let (first, pages) = match follow {
@@ -90,13 +91,13 @@ pub(in super::super) fn stack(
             (first, axes.pages)
         }
         Some(Err(error)) if words.truncated => return Err(error),
-        // Of a recording that was stopped there is but one.
+        // A recording that was stopped has only one page.
         _ => (first, pages),
     };
     let inside = if page.meaning == Meaning::Channels { page.samples } else { 1 };
     let of_series = axes.series_page(series);
     let size = |stride: Option<PageStride>| stride.map_or(1, |stride| stride.size);
-    // Of a recording that was stopped those that have a page at least.
+    // Of an interrupted recording only the steps that have at least one page.
     let begun = |stride: Option<PageStride>, what: &str, remarks: &mut Vec<String>| {
         let Some(stride) = stride else { return 1 };
         let begun = stride.size.min(pages.saturating_sub(of_series + 1) / stride.pages + 1);
@@ -146,7 +147,7 @@ pub(in super::super) fn stack(
     }))
 }
 
-/// Array that is meant, and series of it.
+/// Index of the chosen array, and index of the series in it.
 fn chosen_array(
     attempt: Attempt<'_>,
     tiff: &Tiff,
