@@ -1,10 +1,9 @@
-//! Bricks of 8³ voxels with the smallest and largest density that a sample inside can see.
+//! Bricks of 8³ voxels with the minimum and maximum density that a sample inside can see.
 //!
-//! A sample at `p` (index space) belongs to brick `floor(p / 8)`, clamped to the grid, and its
-//! kernel of radius two sees voxels `floor(p) − 1 … floor(p) + 2`; with two quadrature points it
-//! looks from up to 0.58 voxel further on. A brick's range therefore covers its voxels and three more
-//! on every side; beyond the grid, densities are those at its border: skipping a brick whose range
-//! is transparent can then not change any pixel.
+//! A sample at `p` (index space) belongs to brick `floor(p / 8)`, clamped to the grid. Its kernel of radius 2 covers
+//! voxels `floor(p) − 1 … floor(p) + 2`; with two quadrature points it is evaluated up to 0.58 voxel further away.
+//! The range of a brick therefore covers its voxels and three more on every side. Beyond the grid, densities are
+//! clamped to the border, so skipping a brick whose range is transparent cannot change any pixel.
 
 use std::ops::RangeInclusive;
 
@@ -14,25 +13,26 @@ use super::Volume;
 use super::cells::{self, BRICK_EDGE, CellBounds};
 use super::interrupt::Interrupt;
 
-/// How far a brick's range looks beyond its voxels: the kernel's radius of 2 and one for the
-/// quadrature offset, at most 2 · 0.289 voxel with the thickest slab.
+/// Margin of a brick's range beyond its voxels: the kernel's radius of 2, and one voxel for the quadrature offset of
+/// at most 2 · 0.289 voxel with the thickest slab.
 const REACH: usize = 3;
 
 /// Density ranges of all bricks of a volume.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bricks {
-    /// Bricks along x, y, z: ⌈dims / 8⌉.
+    /// Number of bricks along x, y, z: ⌈dims / 8⌉.
     pub dims: [usize; 3],
-    /// (smallest, largest) density that a sample in the brick can see, x fastest.
+    /// (Minimum, maximum) density that a sample in the brick can see, x fastest.
     pub ranges: Vec<[f32; 2]>,
-    /// Bounds of the density reconstructed in each of their cells, by one unstretched kernel.
+    /// Bounds of the density reconstructed in each cell of the bricks, by an unstretched kernel.
     pub cells: Vec<CellBounds>,
-    /// Where voxels are missing: for each brick its cells in which such a kernel reaches any that are there, a bit each.
+    /// Bit mask for each brick of the cells in which an unstretched kernel reaches any voxel that is not missing;
+    /// `None` if no voxel is missing.
     present: Option<Vec<u64>>,
 }
 
 impl Bricks {
-    /// Finds the ranges of a volume's bricks.
+    /// Computes the density ranges of a volume's bricks and cells.
     pub fn of(volume: &Volume) -> Self {
         let dims = volume.dims().map(|n| n.div_ceil(BRICK_EDGE));
         let ranges = ranges(volume, dims);
@@ -41,19 +41,20 @@ impl Bricks {
         Self { dims, ranges, cells, present }
     }
 
-    /// The cells of a brick in which any voxel counts.
+    /// Returns the mask of cells of a brick that are not entirely missing.
     fn present(&self, brick: usize) -> u64 {
         self.present.as_ref().map_or(u64::MAX, |present| present[brick])
     }
 
-    /// For every brick whether a transfer function shows anything of it: `visible(min, max)`.
+    /// Returns for each brick whether `visible(min, max)`, a transfer function's visibility test, holds for its
+    /// range.
     pub fn occupancy(&self, visible: impl Fn(f32, f32) -> bool + Sync) -> Vec<bool> {
         let is_visible =
             |(brick, &[min, max]): (usize, &[f32; 2])| self.present(brick) != 0 && visible(min, max);
         self.ranges.par_iter().enumerate().map(is_visible).collect()
     }
 
-    /// For every brick its cells in which a transfer function shows anything, a bit each.
+    /// Returns for each brick the bit mask of its cells for which `visible(min, max)` holds.
     pub fn cell_masks(&self, visible: impl Fn(f32, f32) -> bool + Sync) -> Vec<u64> {
         let mask = |(brick, (range, cells)): (usize, (&[f32; 2], &CellBounds))| {
             if self.present(brick) == 0 || !visible(range[0], range[1]) {
@@ -75,13 +76,13 @@ fn union(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 
-/// First and last voxel that brick `b` looks at along an axis of `n` voxels.
+/// Returns the range of voxels that brick `b` covers along an axis of `n` voxels, margins included.
 fn reach(b: usize, n: usize) -> RangeInclusive<usize> {
     let (low, high) = (b * BRICK_EDGE, (b + 1) * BRICK_EDGE - 1 + REACH);
     low.saturating_sub(REACH).min(n - 1)..=high.min(n - 1)
 }
 
-/// The range of every brick: slices reduced in x and y, then layers of slices in z.
+/// Computes the range of every brick: reduces slices in x and y, then layers of slices in z.
 fn ranges(volume: &Volume, dims: [usize; 3]) -> Vec<[f32; 2]> {
     let [nx, ny, nz] = volume.dims();
     let interrupt = Interrupt::here();

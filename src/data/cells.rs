@@ -1,47 +1,47 @@
 //! Cells of 2³ voxels with bounds of the density that is reconstructed inside.
 //!
-//! A cubic B-spline between two voxels is a Bézier curve whose control values are averages of the four
-//! voxels around: (c₋₁+4c₀+c₁)/6, (2c₀+c₁)/3, (c₀+2c₁)/3, (c₀+4c₁+c₂)/6. It never leaves their range, which
-//! is far narrower than that of the voxels themselves: around material in air, only half as many cells
-//! can show it. The prefiltered kernel interpolates between (c₋₁+10c₀+c₁)/12 and (c₀+10c₁+c₂)/12. In three
-//! dimensions the bounds follow axis by axis, from intervals instead of numbers.
+//! A cubic B-spline between two voxels is a Bézier curve whose control values are averages of the four nearest
+//! voxels: (c₋₁+4c₀+c₁)/6, (2c₀+c₁)/3, (c₀+2c₁)/3, (c₀+4c₁+c₂)/6. The curve stays within their range, which is far
+//! narrower than that of the voxels themselves: around material in air, only half as many cells can show it. The
+//! prefiltered kernel interpolates between (c₋₁+10c₀+c₁)/12 and (c₀+10c₁+c₂)/12. In three dimensions the bounds are
+//! computed axis by axis, with intervals instead of numbers.
 //!
-//! A Gaussian is no B-spline, but near σ = 0.6 voxels it is close to one: [`SLACK`].
+//! A Gaussian is no B-spline, but near σ = 0.6 voxels it is close to one: [`SLACK`] covers the difference.
 
 use rayon::prelude::*;
 
 use super::Volume;
 use super::interrupt::Interrupt;
 
-/// Voxels along the edge of a brick, for which the bounds of its cells are kept together.
+/// Edge of a brick in voxels; the bounds of its cells are stored together.
 pub const BRICK_EDGE: usize = 8;
 
-/// Voxels along the edge of a cell.
+/// Edge of a cell, in voxels.
 pub const CELL_EDGE: usize = 2;
 
 /// Cells along the edge of a brick.
 const PER_EDGE: usize = BRICK_EDGE / CELL_EDGE;
 
-/// Cells in a brick.
+/// Number of cells in a brick.
 const CELLS: usize = PER_EDGE * PER_EDGE * PER_EDGE;
 
-/// Farthest that a Gaussian's σ may be from [`BOUNDED_SIGMA`], in voxels, for cells to bound it.
+/// Largest difference of a Gaussian's σ from [`BOUNDED_SIGMA`], in voxels, at which the cells' bounds hold.
 pub const SIGMA_TOLERANCE: f64 = 0.02;
-/// The middle of the Gaussians that cells bound, in voxels.
+/// Standard deviation, in voxels, of the Gaussians for which the cells' bounds hold.
 pub const BOUNDED_SIGMA: f64 = 0.6;
 
-/// Share of the four voxels' range, per axis, by which bounds are widened. A Gaussian's weights differ
-/// from averages of the control values' by at most 0.0224 (half the sum of the differences; σ = 0.58), and
-/// texture units, which know 256 places between texels, by 1/256 = 0.0039.
+/// Share of the four voxels' range, per axis, by which bounds are widened. A Gaussian's weights differ from averages
+/// of the control values' by at most 0.0224 (half the sum of the differences; σ = 0.58), and texture filtering, whose
+/// weights have 8 fractional bits, adds 1/256 = 0.0039.
 const SLACK: f32 = 1.0 / 32.0;
 
-/// Bricks along z that are bounded together: their cells see five slices besides their own 16.
+/// Layers of bricks that are processed together: their cells depend on five slices of voxels besides their own 16.
 const LAYERS: usize = 2;
 
-/// The bounds of a brick's cells, x fastest, in 255ths of the brick's own range: rounded outwards.
+/// Bounds of a brick's cells, x fastest, in 255ths of the brick's own range, rounded outwards.
 pub type CellBounds = [[u8; 2]; CELLS];
 
-/// Finds the bounds of the cells of all bricks, given the bricks' own ranges.
+/// Computes the bounds of the cells of all bricks, given the density ranges of the bricks.
 pub(super) fn bounds(volume: &Volume, dims: [usize; 3], ranges: &[[f32; 2]]) -> Vec<CellBounds> {
     let layer = dims[0] * dims[1];
     let chunks = ranges.par_chunks(LAYERS * layer).enumerate();
@@ -49,7 +49,7 @@ pub(super) fn bounds(volume: &Volume, dims: [usize; 3], ranges: &[[f32; 2]]) -> 
     chunks.flat_map_iter(|(at, ranges)| chunk(volume, dims, at * LAYERS, ranges, &interrupt)).collect()
 }
 
-/// Bounds of the cells of some layers of bricks.
+/// Computes the bounds of the cells in a few layers of bricks.
 fn chunk(
     volume: &Volume,
     dims: [usize; 3],
@@ -61,7 +61,7 @@ fn chunk(
     let wide = [groups[0], groups[1]];
     let layers = ranges.len() / (dims[0] * dims[1]);
     let voxels = volume.dims();
-    // Cells of the grid that these layers hold, and the slices that they see.
+    // Range of cells in these layers, and of the slices that their kernels cover.
     let end = first + layers;
     let low = if first == 0 { -2 } else { (first * BRICK_EDGE) as isize };
     let high = if end == dims[2] { last_cell(voxels[2], groups[2]) } else { (end * BRICK_EDGE) as isize - 1 };
@@ -93,32 +93,32 @@ fn chunk(
     (0..ranges.len()).map(brick).collect()
 }
 
-/// The last cell between voxels that sees any of `n`, or the last of the `groups` of an axis.
+/// Returns the last cell between voxels whose kernel covers any of `n` voxels, or the last of the `groups` along an
+/// axis.
 fn last_cell(n: usize, groups: usize) -> isize {
     n.max(groups * CELL_EDGE - 1) as isize
 }
 
-/// The group of two to which the cell between voxels `c` and `c + 1` belongs: those outside belong to the
-/// outermost.
+/// Returns the group of two that contains the cell between voxels `c` and `c + 1`, clamped to the grid.
 fn group_of(c: isize, groups: usize) -> usize {
     (c.div_euclid(CELL_EDGE as isize).max(0) as usize).min(groups - 1)
 }
 
-/// Bounds in 255ths of a range, rounded outwards.
+/// Quantises bounds to 255ths of a range, rounded outwards.
 fn quantised([low, high]: [f32; 2], [from, to]: [f32; 2]) -> [u8; 2] {
     let scale = 255.0 / (to - from).max(1e-9);
-    // The conversions saturate.
+    // Casts from float to integer saturate.
     let floor = ((low - from) * scale).floor() as u8;
     let ceil = ((high - from) * scale).ceil() as u8;
     [floor, ceil]
 }
 
-/// A bound of [`CellBounds`], as a density.
+/// Converts quantised [`CellBounds`] of one cell back to densities.
 pub(super) fn restored([low, high]: [u8; 2], [from, to]: [f32; 2]) -> [f32; 2] {
     [low, high].map(|level| from + f32::from(level) / 255.0 * (to - from))
 }
 
-/// Intervals on a plane of cells, or a row of them.
+/// Density intervals of a plane or a row of cells.
 #[derive(Clone)]
 struct Plane {
     low: Vec<f32>,
@@ -126,16 +126,16 @@ struct Plane {
 }
 
 impl Plane {
-    /// Nothing was included yet.
+    /// Creates intervals that include nothing yet.
     fn empty(count: usize) -> Self {
         Self { low: vec![f32::INFINITY; count], high: vec![f32::NEG_INFINITY; count] }
     }
 
-    /// Slice z of a volume, bounded along x and y for `wide` groups of cells.
+    /// Computes the bounds of slice `z` along x and y, for `wide` groups of cells.
     fn of_slice(volume: &Volume, z: isize, wide: [usize; 2]) -> Self {
         let [nx, ny, nz] = volume.dims();
         let mut plane = Self::empty(wide[0] * wide[1]);
-        // Beyond the grid, densities are those at its border.
+        // Beyond the grid, densities are clamped to the border.
         let densities = volume.slice_densities(z.clamp(0, nz as isize - 1) as usize);
         let rows: Vec<Self> = densities.chunks_exact(nx).map(|row| Self::of_row(row, wide[0])).collect();
         let row = |y: isize| &rows[y.clamp(0, ny as isize - 1) as usize];
@@ -151,11 +151,11 @@ impl Plane {
         plane
     }
 
-    /// A row of voxels, bounded along x for `groups` of cells.
+    /// Computes the bounds of a row of voxels along x, for `groups` groups of cells.
     fn of_row(row: &[f32], groups: usize) -> Self {
         let last = last_cell(row.len(), groups);
         let cells = (last + 3) as usize;
-        // Three voxels before the row, as the first cell sees, and as many as needed behind.
+        // Three voxels of padding before the row, for the kernel of the first cell, and as many as needed behind it.
         let at = |x: usize| row[x.saturating_sub(3).min(row.len() - 1)];
         let padded: Vec<f32> = (0..cells + 3).map(at).collect();
         let taps = std::array::from_fn(|tap| &padded[tap..tap + cells]);
@@ -170,13 +170,13 @@ impl Plane {
         grouped
     }
 
-    /// Includes what a kernel makes of four neighbours, wherever it stands between the middle two.
+    /// Widens the intervals by all values that a kernel can reconstruct from four neighbours between the middle two.
     fn include(&mut self, taps: [&Self; 4]) {
         include(taps.map(|tap| &tap.low[..]), taps.map(|tap| &tap.high[..]), &mut self.low, &mut self.high);
     }
 }
 
-/// Widens intervals by the bounds of curves whose coefficients lie in four neighbouring intervals.
+/// Widens intervals by the bounds of curves whose four coefficients lie in the intervals `lows` … `highs`.
 fn include(lows: [&[f32]; 4], highs: [&[f32]; 4], low: &mut [f32], high: &mut [f32]) {
     let taps = lows.map(|tap| &tap[..low.len()]);
     let tops = highs.map(|tap| &tap[..low.len()]);
@@ -193,8 +193,8 @@ fn include(lows: [&[f32]; 4], highs: [&[f32]; 4], low: &mut [f32], high: &mut [f
     }
 }
 
-/// What a curve between its middle coefficients lies between: control values of the cubic B-spline, and
-/// the ends of the prefiltered kernel's line.
+/// Returns values whose range bounds the curve between its middle coefficients: control values of the cubic B-spline,
+/// and end points of the prefiltered kernel's line.
 fn controls([a, b, c, d]: [f32; 4]) -> [f32; 6] {
     let (twelfth, sixth, third) = (1.0 / 12.0, 1.0 / 6.0, 1.0 / 3.0);
     [
@@ -207,7 +207,7 @@ fn controls([a, b, c, d]: [f32; 4]) -> [f32; 6] {
     ]
 }
 
-/// As `f32::min`, in one instruction: densities are numbers.
+/// Returns the smaller number, like `f32::min` but in one instruction: densities are never NaN.
 fn least(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
@@ -222,7 +222,7 @@ mod tests {
     use crate::data::{Bricks, Samples};
     use glam::DVec3;
 
-    /// Noise of a fixed seed, mostly nothing.
+    /// Creates sparse noise from a fixed seed; five of eight voxels are 0.
     fn noise(dims: [usize; 3]) -> Volume {
         let mut state = 1u32;
         let mut next = || {
@@ -234,7 +234,7 @@ mod tests {
         Volume::with_spacing("noise", dims, DVec3::ONE, Samples::U8(values)).unwrap()
     }
 
-    /// Weights of a kernel's four neighbours at a fraction of a voxel.
+    /// Kernel weights of the four neighbours at a fraction of a voxel.
     type Weights = fn(f64) -> [f64; 4];
 
     fn b_spline(f: f64) -> [f64; 4] {
@@ -256,7 +256,7 @@ mod tests {
         weights.map(|weight| weight / weights.iter().sum::<f64>())
     }
 
-    /// The same amid so many voxels of nothing.
+    /// Returns the volume surrounded by a margin of empty voxels.
     fn in_margin(inner: &Volume, margin: usize) -> Volume {
         let dims = inner.dims().map(|n| n + 2 * margin);
         let value = |at: usize| {
@@ -269,8 +269,8 @@ mod tests {
         Volume::with_spacing("margin", dims, DVec3::ONE, Samples::U8(values)).unwrap()
     }
 
-    /// The mean width of the bounds of the cells in and around a part of a volume, `margin` voxels inside it, in none of
-    /// which any kernel leaves them.
+    /// Returns the mean width of the bounds of the cells in and around a part of a volume, `margin` voxels inside it,
+    /// and asserts that no kernel exceeds them.
     fn mean_width(volume: &Volume, margin: isize) -> f64 {
         let bricks = Bricks::of(volume);
         let kernels: [Weights; 4] = [b_spline, prefiltered, |f| gaussian(f, 0.58), |f| gaussian(f, 0.62)];
@@ -310,7 +310,7 @@ mod tests {
     #[test]
     fn no_kernel_leaves_the_bounds_of_a_cell() {
         let noise = noise([11, 6, 17]);
-        // Beyond the grid is its border again.
+        // Without a margin: beyond the grid, densities are those at its border.
         mean_width(&noise, 0);
         let width = mean_width(&in_margin(&noise, 4), 4);
         assert!(width < 0.6, "bounds are too wide to be of use: {width}");
@@ -322,12 +322,12 @@ mod tests {
         values[13 + 24 * (13 + 24 * 13)] = 255;
         let volume = Volume::with_spacing("one", [24; 3], DVec3::ONE, Samples::U8(values)).unwrap();
         let bricks = Bricks::of(&volume);
-        // It is seen between voxels 11 and 15: cells 5 … 7 along each axis.
+        // The voxel is visible between voxels 11 and 15: cells 5 … 7 along each axis.
         let shown = |threshold: f32| -> u32 {
             bricks.cell_masks(|_, max| max > threshold).iter().map(|mask| mask.count_ones()).sum()
         };
         assert_eq!(shown(0.0), 27);
-        // Only the one around it knows of the peak of (2/3)³ = 0.30; its neighbours see 0.07 at most.
+        // Only the cell that contains it reaches the peak of (2/3)³ = 0.30; its neighbours see at most 0.07.
         assert_eq!(shown(0.25), 1);
     }
 }

@@ -1,9 +1,9 @@
-//! How often each value occurs.
+//! Histogram of the densities of a volume.
 
 use super::interrupt::Interrupt;
 use super::{Missing, Volume};
 
-/// Bins of a histogram: fine enough for 12-bit data whose object spans a tenth of the range.
+/// Number of bins of a histogram: fine enough for 12-bit data whose object spans a tenth of the range.
 pub const HISTOGRAM_BINS: usize = 1024;
 
 /// Counts of densities in equal bins over the volume's value range.
@@ -11,7 +11,7 @@ pub const HISTOGRAM_BINS: usize = 1024;
 pub struct Histogram {
     /// Voxels per bin; bin `i` of `n` holds densities in `[i/n, (i+1)/n)`, the last one also 1.
     pub counts: Vec<u64>,
-    /// All voxels that are there.
+    /// Number of voxels that are not missing.
     pub total: u64,
 }
 
@@ -47,7 +47,7 @@ impl Histogram {
         Self { counts, total: (volume.voxel_count() - missing.map_or(0, Missing::count)) as u64 }
     }
 
-    /// The density below which a share of `fraction` (0 … 1) of the voxels lies, to one bin.
+    /// Returns the density below which a share of `fraction` (0 … 1) of the voxels lies, to one bin.
     pub fn percentile(&self, fraction: f64) -> f64 {
         let wanted = fraction * self.total as f64;
         let mut seen = 0.0;

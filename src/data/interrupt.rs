@@ -1,36 +1,36 @@
-//! Giving up long work in the middle.
+//! Cooperative cancellation of long computations.
 //!
-//! Statistics, means and bounds of a large volume take seconds, far below whoever waits for it. Whoever does such work asks
-//! between its pieces whether it is still wanted, and leaves the rest undone if it is not. What is left is nonsense of the
-//! right shape, or an error: whoever has started the work looks at its control before using any of it.
+//! Statistics, means and bounds of a large volume take seconds, deep in the call stack of the thread that waits for
+//! them. Such work polls an [`Interrupt`] between its pieces, and stops early if it was cancelled. The result is then
+//! garbage of the right shape, or an error: the caller that started the work checks its control before using it.
 
 use std::cell::RefCell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Values between two looks at whether they are still wanted: at a few nanoseconds each well below a millisecond.
+/// Number of values between two polls: at a few nanoseconds each, well below a millisecond.
 pub(in crate::data) const PIECE: usize = 1 << 16;
 
 thread_local! {
     static HERE: RefCell<Interrupt> = const { RefCell::new(Interrupt(None)) };
 }
 
-/// Whether work has been given up, and how many of its pieces were begun before.
+/// Cancellation flag of a task, and the count of its pieces that were begun.
 #[derive(Debug, Default)]
 pub(in crate::data) struct Signal {
     pub(in crate::data) is_cancelled: AtomicBool,
-    /// Pieces that were begun.
+    /// Number of pieces of work that were begun.
     pub(in crate::data) begun: AtomicU64,
-    /// After so many it is given up by itself, in tests; 0 for never.
+    /// Number of pieces after which the task cancels automatically, in tests; 0 disables this.
     pub(in crate::data) last: AtomicU64,
 }
 
-/// Asks whether the work of a thread has been given up. It goes with the work to other threads.
+/// Handle with which work polls for cancellation. Work that moves to other threads carries it along.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Interrupt(Option<Arc<Signal>>);
 
 impl Interrupt {
-    /// That of what this thread is doing.
+    /// Returns the handle of the task that runs on this thread.
     pub(crate) fn here() -> Self {
         HERE.with_borrow(Clone::clone)
     }
@@ -39,19 +39,19 @@ impl Interrupt {
         Self(Some(Arc::clone(signal)))
     }
 
-    /// Whether anybody could give it up.
+    /// Returns true if the current task can be cancelled at all.
     pub(crate) fn is_possible(&self) -> bool {
         self.0.is_some()
     }
 
-    /// Before a piece of work: whether it is to be left undone.
+    /// Counts a piece of work about to begin, and returns true if it must not be done.
     pub(crate) fn is_due(&self) -> bool {
         self.0.as_ref().is_some_and(|signal| signal.is_due())
     }
 
-    /// Does work of this thread that can be given up.
+    /// Runs work on this thread under this handle, which [`here`](Self::here) returns meanwhile.
     pub(in crate::data) fn during<T>(self, work: impl FnOnce() -> T) -> T {
-        /// Puts back what was, also when the work panics.
+        /// Guard that restores the previous handle, also when the work panics.
         struct Before(Interrupt);
         impl Drop for Before {
             fn drop(&mut self) {
@@ -82,7 +82,7 @@ impl Signal {
 mod tests {
     use super::*;
 
-    /// Values made one by one, up to where they are not wanted any more.
+    /// Makes values one by one, until the task is cancelled.
     fn made<T>(count: usize, value: impl Fn(usize) -> T) -> Vec<T> {
         let interrupt = Interrupt::here();
         let mut made = Vec::with_capacity(count);

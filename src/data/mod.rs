@@ -1,6 +1,6 @@
-//! Volumes: what they are, where they come from, what can be said of their values.
+//! Volumes: their voxels, readers of file formats, built-in volumes, and statistics of their values.
 //!
-//! Knows nothing of settings, of the GPU or of the window.
+//! Independent of settings, the GPU and the window.
 
 mod attempt;
 mod bricks;

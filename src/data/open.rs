@@ -1,4 +1,4 @@
-//! Volumes by what a FILE argument names: files and built-in ones.
+//! Opening of volumes by a FILE argument: files and built-in volumes.
 
 use std::path::Path;
 
@@ -6,21 +6,21 @@ use super::attempt::{Attempt, Held, Kept, Watch, quoted};
 use super::load::{LoadControl, LoadError, LoadOptions, load};
 use super::{Volume, synthetic};
 
-/// Prefix of the names of built-in volumes where a file is expected.
+/// Prefix of the names of built-in volumes in place of a file's path.
 const BUILTIN: &str = "builtin:";
 
-/// Loads what a FILE argument names: a path, or `builtin:NAME` or `builtin:NAME:N` for a built-in
-/// volume of N³ voxels. A file whose name begins like that is reached as `./builtin:…`.
+/// Loads the volume that a FILE argument names: a path, or `builtin:NAME` or `builtin:NAME:N` for a built-in volume
+/// of N³ voxels. A file whose name has this prefix is reached as `./builtin:…`.
 ///
 /// # Errors
-/// As [`load`] and [`builtin`](super::synthetic::builtin).
+/// Fails like [`load`] and [`builtin`](super::synthetic::builtin).
 pub fn open(
     source: impl AsRef<Path>,
     options: &LoadOptions,
     control: &LoadControl,
 ) -> Result<Volume, LoadError> {
     let source = source.as_ref();
-    // A name that is no text is a file's.
+    // A name that is not valid text belongs to a file.
     let Some(builtin) = source.to_str().and_then(|name| name.strip_prefix(BUILTIN)) else {
         return load(source, options, control);
     };
@@ -40,11 +40,11 @@ pub fn open(
     };
     attempt.refuse_unasked(&options.choice, &Watch::default())?;
     let volume = synthetic::builtin_within(name, n, options.memory_budget_bytes, &options.choice, control)?;
-    // It is made whole.
+    // Built-in volumes are made whole; the portion is taken afterwards.
     let (portion, dims) = (options.choice.portion.unwrap_or_default(), volume.dims());
     let Some(wanted) = Kept::of(&portion, dims, false) else { return Err(attempt.outside(dims)) };
     let held = Held { portion, grid: Some(dims), ..Held::default() };
-    // What was a volume stays one: nothing else can go wrong.
+    // A part of a valid volume is valid; no other error is expected here.
     volume
         .portion(&Kept::all(dims), &wanted)
         .map(|volume| volume.with_held(held))

@@ -1,4 +1,4 @@
-//! What is opened of a file, or of a folder: which of several volumes, and how much of it.
+//! Selection of the volume to open in a file or folder: series, array, channel, time step, component and portion.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,42 +6,43 @@ use super::held::{Aspect, Components, Held, Several, Watch, Whole};
 use super::offer::{Dimension, Offer};
 use super::portion::Portion;
 
-/// What the user has said about which of several volumes is meant, nothing where there is but one; and about how much of
-/// it is read.
+/// The user's selection among the volumes of a file, and the portion of the volume that is read. All fields are
+/// `None` for a file with a single volume that is read completely.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Choice {
-    /// The component of vectors and colours, from 0; without one their length, or their luminance.
+    /// Index of the component of vectors and colours, from 0; without one the magnitude, or the luminance, is shown.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub component: Option<usize>,
-    /// The time step, from 0.
+    /// Index of the time step, from 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frame: Option<usize>,
-    /// The channel, from 0.
+    /// Index of the channel, from 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub channel: Option<usize>,
-    /// The series of a folder, by its [`Offer::key`].
+    /// Key of the series of a folder, as in [`Offer::key`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub series: Option<String>,
-    /// The array of an archive, by its [`Offer::key`].
+    /// Key of the array of an archive, as in [`Offer::key`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub array: Option<String>,
-    /// How much of the volume is read; where nothing is said, all of it.
+    /// Portion of the volume that is read; `None` reads all voxels.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub portion: Option<Portion>,
-    /// What is averaged turned out to be labels: blocks have the most frequent of them.
+    /// True if the volume to be averaged has turned out to hold labels: each block then gets its most frequent label.
     #[serde(skip)]
     pub are_labels: bool,
-    /// Where nothing is said, or what is said is not there, the first is meant: somebody can choose again.
+    /// Fall back to the first volume where nothing is selected or the selected one does not exist; set by callers in
+    /// which the user can choose again.
     #[serde(skip)]
     pub otherwise_first: bool,
-    /// Where readers write down what there was to choose from.
+    /// Recorder into which readers write the volumes that were available.
     #[serde(skip)]
     pub watch: Option<Watch>,
 }
 
 impl Choice {
-    /// What is said of a dimension: an [`Offer::key`], or a name.
+    /// Returns the selection in a dimension: an [`Offer::key`], or a name.
     pub fn said(&self, dimension: Dimension) -> Option<String> {
         match dimension {
             Dimension::Frame => self.frame.map(|frame| frame.to_string()),
@@ -51,7 +52,7 @@ impl Choice {
         }
     }
 
-    /// Text that is said of an aspect, as [`Self::said`].
+    /// Returns the selection in an aspect as text, like [`Self::said`].
     pub(super) fn said_of(&self, aspect: Aspect) -> Option<String> {
         match aspect {
             Aspect::Of(dimension) => self.said(dimension),
@@ -59,7 +60,7 @@ impl Choice {
         }
     }
 
-    /// The choice with one of the offers of a dimension.
+    /// Returns this choice with the offer of the given key selected in a dimension.
     #[must_use]
     pub fn with(mut self, dimension: Dimension, key: &str) -> Self {
         let number = key.parse().ok();
@@ -72,10 +73,11 @@ impl Choice {
         self
     }
 
-    /// Which of the offers is meant: the only one, or the one that was named by its key, or its name.
+    /// Returns the index of the selected offer: the only one, or the one whose key or name was given.
     ///
     /// # Errors
-    /// [`Unclear::Several`] where none was named, [`Unclear::Unknown`] where another was.
+    /// [`Unclear::Several`] if nothing is selected among several, [`Unclear::Unknown`] if the selected one does not
+    /// exist.
     pub(super) fn of(&self, dimension: Dimension, offers: &[Offer]) -> Result<usize, Unclear> {
         if let Some(watch) = &self.watch {
             watch.asks(Aspect::Of(dimension));
@@ -100,7 +102,7 @@ impl Choice {
         Ok(at)
     }
 
-    /// Which component of voxels of so many numbers is meant, if one is.
+    /// Returns the selected component of voxels with `count` numbers each, if one is selected.
     pub(in crate::data) fn component_among(&self, count: usize, is_color: bool) -> Option<usize> {
         let whole = match (is_color, count) {
             (true, ..3) => Whole::First,
@@ -110,7 +112,8 @@ impl Choice {
         self.watched_component(Components { count, is_color, whole, shown: self.component })
     }
 
-    /// Which of so many layers is meant: numbers that make nothing together.
+    /// Returns the selected layer out of `count`; layers are numbers of a voxel that form no vector or colour
+    /// together.
     pub(in crate::data) fn layer_among(&self, count: usize) -> Option<usize> {
         let (is_color, whole) = (false, Whole::First);
         self.watched_component(Components { count, is_color, whole, shown: self.component })
@@ -127,19 +130,19 @@ impl Choice {
         shown
     }
 
-    /// Whether nothing is said.
+    /// Returns true if nothing is selected and the whole volume is read.
     pub fn is_empty(&self) -> bool {
         self.names_none() && self.portion.is_none()
     }
 
-    /// Whether nothing is said of which of several volumes is meant.
+    /// Returns true if no component, frame, channel, series or array is selected.
     fn names_none(&self) -> bool {
         let Self { component, frame, channel, series, array, portion: _, .. } = self;
         let numbers = [component, frame, channel];
         numbers.iter().all(|said| said.is_none()) && series.is_none() && array.is_none()
     }
 
-    /// The same choice, with what another says of what this one says nothing of: which volume, or how much of it.
+    /// Fills unset parts of this choice from `other`: the selected volume as a whole, and the portion separately.
     #[must_use]
     pub fn or(self, other: &Self) -> Self {
         let portion = self.portion.or(other.portion);
@@ -148,13 +151,13 @@ impl Choice {
         Self { portion, are_labels, otherwise_first, watch, ..which }
     }
 
-    /// The same choice, with the first for what is not said or not there.
+    /// Returns this choice with [`otherwise_first`](Self::otherwise_first) set.
     #[must_use]
     pub fn or_first(self) -> Self {
         Self { otherwise_first: true, ..self }
     }
 
-    /// The same choice, with a watch of its own: no two files share what is found.
+    /// Returns this choice with a new watch, and the watch; no two loads may share one.
     #[must_use]
     pub(in crate::data) fn watched(self) -> (Self, Watch) {
         let watch = Watch::default();
@@ -162,17 +165,18 @@ impl Choice {
     }
 }
 
-/// Why it is not clear which of several volumes is meant.
+/// Reason why a selection among several volumes fails.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Unclear {
-    /// Nothing was said.
+    /// Nothing was selected although there are several.
     Several,
-    /// What was said is none of them.
+    /// The selection matches no offer; holds its text.
     Unknown(String),
 }
 
 impl Held {
-    /// The choice that opens the same volume again; nothing where the file holds but one, and all of it was read.
+    /// Returns the choice that opens the same volume again; empty if the file holds a single volume and all of it was
+    /// read.
     pub fn choice(&self) -> Choice {
         let component = self.components.and_then(|components| components.shown);
         let portion = Some(self.portion).filter(|portion| !portion.is_whole());

@@ -1,4 +1,4 @@
-//! Watching a load from another thread, and stopping it.
+//! Progress and cancellation of a load, shared between threads.
 
 use std::fmt;
 use std::sync::Arc;
@@ -8,24 +8,24 @@ use super::error::LoadError;
 use super::size::Size;
 use crate::data::interrupt::{Interrupt, Signal};
 
-/// Shared by the thread that loads and the one that waits.
+/// Progress counter and cancel token of a load, shared by the loading thread and the waiting one.
 ///
-/// Whether it is cancelled is looked at before every block of at most 1 MiB that is read, and between pieces of what is
-/// found out of the voxels. The counts are bytes of voxels, after inflating.
+/// The token is checked before every block of at most 1 MiB that is read, and between pieces of the later analysis of
+/// the voxels. Counts are bytes of voxels after decompression.
 #[derive(Debug, Default)]
 pub struct LoadControl {
     signal: Arc<Signal>,
-    /// Bytes of voxels that are there.
+    /// Bytes of voxels read until now.
     pub done_bytes: AtomicU64,
     /// Bytes of voxels in the whole volume; 0 until the header has been read.
     pub total_bytes: AtomicU64,
     weigh: Weigh,
 }
 
-/// Says of a volume whose size is known whether its voxels are read.
+/// Callback that decides, by the size of a volume, whether its voxels are read.
 type Accepts = dyn Fn(&Size) -> bool + Send + Sync;
 
-/// Who is asked, if anybody.
+/// Callback that is asked before a volume's voxels are read, if there is one.
 #[derive(Default)]
 struct Weigh(Option<Box<Accepts>>);
 
@@ -36,14 +36,14 @@ impl fmt::Debug for Weigh {
 }
 
 impl LoadControl {
-    /// A control that nobody has cancelled.
+    /// Creates a control that is not cancelled.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// A control for volumes of which somebody says whether they are read, once their size is known and before their voxels
-    /// take any memory. Loading fails with [`LoadError::Cancelled`] where they are not; of what the user has said how much
-    /// is read of it nobody is asked.
+    /// Creates a control that asks `accepts` once the size of a volume is known, before its voxels take any memory.
+    /// Loading fails with [`LoadError::Cancelled`] if it returns false. It is not asked if the user has already
+    /// chosen a portion.
     pub fn weighing(accepts: impl Fn(&Size) -> bool + Send + Sync + 'static) -> Self {
         Self { weigh: Weigh(Some(Box::new(accepts))), ..Self::default() }
     }
@@ -52,22 +52,22 @@ impl LoadControl {
         self.weigh.0.as_ref().is_none_or(|accepts| accepts(size))
     }
 
-    /// Asks the load to stop; it then fails with [`LoadError::Cancelled`].
+    /// Requests the load to stop; it then fails with [`LoadError::Cancelled`].
     pub fn cancel(&self) {
         self.signal.is_cancelled.store(true, Ordering::Relaxed);
     }
 
-    /// Whether it was asked to stop.
+    /// Returns true if cancellation was requested.
     pub fn is_cancelled(&self) -> bool {
         self.signal.is_cancelled.load(Ordering::Relaxed)
     }
 
-    /// The share that is there, 0 … 1, once the size is known.
+    /// Returns the completed share, 0 … 1, once the total size is known.
     pub fn fraction(&self) -> Option<f64> {
         self.bytes().map(|[done, total]| done as f64 / total as f64)
     }
 
-    /// Bytes that are there, and all of them, once that is known.
+    /// Returns completed and total bytes, once the total is known.
     pub fn bytes(&self) -> Option<[u64; 2]> {
         let total = self.total_bytes.load(Ordering::Relaxed);
         (total > 0).then(|| [self.done_bytes.load(Ordering::Relaxed).min(total), total])
@@ -86,18 +86,18 @@ impl LoadControl {
         if self.signal.is_due() { Err(LoadError::Cancelled) } else { Ok(()) }
     }
 
-    /// Does work that is given up when this is cancelled. What comes of it then is to be thrown away.
+    /// Runs work that stops early when this control is cancelled; its result must be discarded in that case.
     pub(crate) fn during<T>(&self, work: impl FnOnce() -> T) -> T {
         Interrupt::of(&self.signal).during(work)
     }
 
-    /// Pieces of work that were begun: blocks that were read, slices that were counted. None of them takes longer than a
-    /// slice does.
+    /// Number of pieces of work that were begun, such as blocks read or slices counted. No piece takes longer than
+    /// one slice.
     pub fn begun(&self) -> u64 {
         self.signal.begun.load(Ordering::Relaxed)
     }
 
-    /// Cancels it by itself after so many pieces.
+    /// Cancels the load automatically after the given number of pieces.
     #[cfg(any(test, feature = "testing"))]
     pub fn cancel_after(&self, pieces: u64) {
         self.signal.last.store(pieces.max(1), Ordering::Relaxed);

@@ -1,4 +1,4 @@
-//! Why a volume could not be loaded, in words that help.
+//! Errors of loading a volume, with messages that say how to proceed.
 
 use std::fmt;
 use std::io;
@@ -9,19 +9,19 @@ use super::held::{Aspect, Watch};
 use super::offer::{Dimension, Offer};
 use crate::data::foreign::plain;
 
-/// Offers that a message lists: as many as a screen has lines for.
+/// Maximum number of offers that a message lists: about the lines of a screen.
 const MOST_LISTED: usize = 24;
 
-/// What a user reads: `WHAT: WHY (file, field); HELP`.
+/// Parts of a message to the user, displayed as `WHAT: WHY (file, field); HELP`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Explanation {
-    /// What did not work.
+    /// Operation that failed, as `cannot read the RAW volume`.
     pub what: String,
-    /// Why: what was expected and what was found.
+    /// Cause: what was expected and what was found.
     pub why: String,
-    /// Where: the file and, after a comma, the field or option.
+    /// Location: the file and, after a comma, the field or option.
     pub place: String,
-    /// What helps.
+    /// Advice on how to proceed.
     pub help: String,
 }
 
@@ -31,54 +31,54 @@ impl fmt::Display for Explanation {
     }
 }
 
-/// The kinds of failure that callers treat differently.
+/// Kinds of failure that callers treat differently.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum LoadErrorKind {
-    /// The file or the options are wrong, broken or of a kind that is not read.
+    /// The file or the options are wrong, damaged or of an unsupported kind.
     BadInput,
-    /// The volume is larger than a limit or than the memory.
+    /// The volume exceeds a limit, the memory budget for example.
     Limit,
-    /// The file is not there or cannot be read.
+    /// The file does not exist or cannot be read.
     Io,
-    /// The user cancelled.
+    /// The user cancelled the load.
     Cancelled,
 }
 
-/// Why a volume could not be loaded.
+/// Error of loading a volume.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
-    /// The file or the options are wrong, broken or of a kind that is not read.
+    /// The file or the options are wrong, damaged or of an unsupported kind.
     #[error("{0}")]
     BadInput(Box<Explanation>),
-    /// The volume is larger than a limit or than the memory.
+    /// The volume exceeds a limit, the memory budget for example.
     #[error("{0}")]
     Limit(Box<Explanation>),
-    /// The file is not there or cannot be read.
+    /// The file does not exist or cannot be read.
     #[error("{explanation}")]
     Io {
-        /// The words for it.
+        /// Message shown to the user.
         explanation: Box<Explanation>,
-        /// What the operating system said, if it was asked.
+        /// Error of the operating system, if a system call failed.
         #[source]
         source: Option<io::Error>,
     },
-    /// There are several volumes, and nobody has said which is meant.
+    /// The file holds several volumes, and none of them is selected.
     #[error("{explanation}")]
     Several {
-        /// The words for it, with a list.
+        /// Message to the user, which lists the volumes.
         explanation: Box<Explanation>,
-        /// In what they differ.
+        /// Dimension in which the volumes differ.
         dimension: Dimension,
-        /// All of them.
+        /// All volumes that can be selected.
         offers: Vec<Offer>,
     },
-    /// The user cancelled.
+    /// The user cancelled the load.
     #[error("loading was cancelled")]
     Cancelled,
 }
 
 impl LoadError {
-    /// Which kind of failure this is.
+    /// Returns the kind of this failure.
     pub fn kind(&self) -> LoadErrorKind {
         match self {
             Self::BadInput(_) | Self::Several { .. } => LoadErrorKind::BadInput,
@@ -88,13 +88,13 @@ impl LoadError {
         }
     }
 
-    /// Whether it is about a field or an option of that name.
+    /// Returns true if the error concerns a field or an option of the given name.
     pub fn is_about(&self, field: &str) -> bool {
         let of = |place: &str| place.strip_suffix(field).is_some_and(|rest| rest.ends_with(", "));
         self.explanation().is_some_and(|explanation| of(&explanation.place))
     }
 
-    /// The parts of the message, except when cancelled.
+    /// Returns the parts of the message; `None` if the load was cancelled.
     pub fn explanation(&self) -> Option<&Explanation> {
         match self {
             Self::BadInput(explanation)
@@ -106,12 +106,12 @@ impl LoadError {
     }
 }
 
-/// Makes the errors of one attempt: knows what is being done with which file.
+/// Context from which the errors of one operation are made: the operation and its file.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::data) struct Attempt<'a> {
-    /// What is being done, after "cannot": `read the RAW volume`.
+    /// The operation, as it reads after "cannot": `read the RAW volume`.
     pub(in crate::data) what: &'a str,
-    /// The file it is done with.
+    /// Path of the file that is read.
     pub(in crate::data) path: &'a Path,
 }
 
@@ -134,10 +134,10 @@ impl Attempt<'_> {
         LoadError::Limit(Box::new(self.explain(field, why.into(), help.into())))
     }
 
-    /// Which of several volumes is meant, by what the user has said of it.
+    /// Resolves the user's selection among several volumes to an index.
     ///
     /// # Errors
-    /// [`LoadError::Several`] where nothing was said or none of them is called so, with the list in its words.
+    /// [`LoadError::Several`] if nothing is selected or no volume matches; its message lists the volumes.
     pub(in crate::data) fn chosen(
         &self,
         choice: &Choice,
@@ -161,11 +161,11 @@ impl Attempt<'_> {
         Err(LoadError::Several { explanation: Box::new(self.explain(option, why, help)), dimension, offers })
     }
 
-    /// Refuses what is chosen in an aspect that the file does not have: what no reader has asked for. The first, 0, is in
-    /// every file.
+    /// Rejects a selection in an aspect that the file does not have, i.e. for which no reader has queried the choice.
+    /// Index 0 is accepted everywhere.
     ///
     /// # Errors
-    /// `BadInput` with what there is to choose from, unless the first is meant where what is said is not there.
+    /// `BadInput` with the aspects that exist, unless the choice falls back to the first volume.
     pub(crate) fn refuse_unasked(&self, choice: &Choice, watch: &Watch) -> Result<(), LoadError> {
         let is_unasked = |aspect: Aspect| {
             let said = choice.said_of(aspect).filter(|said| said != "0")?;
@@ -205,13 +205,13 @@ impl Attempt<'_> {
         Err(self.bad_input(option, why, help))
     }
 
-    /// The region that is asked for is empty, or reaches beyond the grid.
+    /// Error for a requested region that is empty or reaches beyond the grid.
     pub(in crate::data) fn outside(&self, [x, y, z]: [usize; 3]) -> LoadError {
         let why = format!("there are {x} x {y} x {z} voxels");
         self.bad_input("--region", why, "a region of at least one of them helps")
     }
 
-    /// Something the file system is asked for is of the wrong kind.
+    /// Error for a path of the wrong kind, such as a folder in place of a file.
     pub(in crate::data) fn not_a_file(&self, why: &str, help: &str) -> LoadError {
         LoadError::Io {
             explanation: Box::new(self.explain("", why.to_owned(), help.to_owned())),
@@ -230,7 +230,7 @@ impl Attempt<'_> {
         LoadError::Io { explanation: Box::new(self.explain("", why, help.to_owned())), source: Some(source) }
     }
 
-    /// Says for the log what was taken for granted.
+    /// Logs a warning about an assumption that was made about the file.
     pub(in crate::data) fn warn(&self, what: impl fmt::Display) {
         log::warn!("{}: {what}", plain(&self.path.to_string_lossy(), 4096));
     }
@@ -242,7 +242,7 @@ impl Attempt<'_> {
     }
 }
 
-/// Text from a file in quotes, short and without control characters, for a message.
+/// Quotes text from a file for a message: shortened, and without control characters.
 pub(in crate::data) fn quoted(text: &str) -> String {
     format!("\"{}\"", plain(text, 60))
 }

@@ -1,4 +1,4 @@
-//! The size of a volume, checked before anything is allocated: what of it is wanted, and what reading keeps.
+//! Extent of a volume's grid, checked against the memory budget before anything is allocated.
 
 use super::choice::Choice;
 use super::control::LoadControl;
@@ -9,50 +9,51 @@ use super::portion::{LONGEST_STEP, Portion, Thinning};
 use super::size::{Size, needed_bytes};
 use crate::data::VoxelType;
 
-/// What there is for a volume, and how much of it is wanted.
+/// Memory budget, selection and control of one read.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::data) struct Room<'a> {
-    /// Most bytes of voxels.
+    /// Maximum number of bytes for voxels.
     pub(in crate::data) budget_bytes: u64,
-    /// What is said of what is read.
+    /// The user's selection of a volume and its portion.
     pub(in crate::data) choice: &'a Choice,
-    /// Who waits for it.
+    /// Control of the waiting thread: progress, cancellation and acceptance of the size.
     pub(in crate::data) control: &'a LoadControl,
 }
 
-/// The size of a grid, what of it is wanted, and what of it reading keeps: that fits into the memory budget.
+/// Size of a grid with the portion that is wanted and the portion that is kept while reading, within the memory
+/// budget.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::data) struct Extent {
     /// Voxels of the file's grid along x, y, z, none of them 0.
     pub(in crate::data) dims: [usize; 3],
-    /// Their product.
+    /// Number of voxels of the grid: the product of `dims`.
     pub(in crate::data) voxels: usize,
-    /// Bytes of all voxels.
+    /// Bytes of all voxels of the grid.
     pub(in crate::data) bytes: u64,
-    /// What is wanted of them.
+    /// Portion of the grid that the caller wants.
     pub(in crate::data) wanted: Kept,
-    /// What reading keeps of them: what is wanted, or more where that is better made of what was read.
+    /// Portion that is kept while reading: the wanted one, or a larger one from which it is derived afterwards.
     pub(in crate::data) read: Kept,
 }
 
 impl Extent {
-    /// The extent of a grid of which all is read, with no look at any limit.
+    /// Returns the extent of a grid that is read completely, without checking any limit.
     pub(in crate::data) fn sized(dims: [usize; 3], voxel_type: VoxelType) -> Self {
         let kept = Kept::all(dims);
         let bytes = (kept.count() as u64).saturating_mul(voxel_type.bytes() as u64);
         Self { dims, voxels: kept.count(), bytes, wanted: kept, read: kept }
     }
 
-    /// The extent of the slices of it that are needed, where they are all that there is.
+    /// Returns the extent of only the needed slices, treated as a grid of their own.
     pub(in crate::data) fn of_slices(self, voxel_type: VoxelType) -> Self {
         let kept = self.read.of_slices();
         Self { wanted: kept, read: kept, ..Self::sized(kept.grid, voxel_type) }
     }
 
-    /// Checks `dims`, which `field` gave, against zero, overflow and the budget, for a reader that keeps what is wanted
-    /// and no more.
+    /// Checks `dims`, which `field` gave, against zero, overflow and the budget, for a reader that keeps only the
+    /// wanted voxels.
     ///
-    /// Blocks are averaged after reading where all that they are made of fits, else while it is read.
+    /// Blocks are averaged after reading if all their voxels fit into the budget, otherwise while reading.
     pub(in crate::data) fn checked(
         attempt: Attempt<'_>,
         field: &str,
@@ -75,7 +76,7 @@ impl Extent {
         Ok(extent)
     }
 
-    /// As [`Self::checked`], for a reader that makes all voxels before any can be left out.
+    /// Does the check of [`Self::checked`] for a reader that decodes all voxels before any can be dropped.
     pub(in crate::data) fn checked_whole(
         attempt: Attempt<'_>,
         field: &str,
@@ -88,7 +89,7 @@ impl Extent {
         Self { read: Kept::all(extent.dims), ..extent }.within(attempt, field, voxel_type, room, true)
     }
 
-    /// The extent of a grid, of which what is wanted is read.
+    /// Computes the extent of a grid of which only the wanted portion is read.
     fn measured(
         attempt: Attempt<'_>,
         field: &str,
@@ -104,10 +105,11 @@ impl Extent {
                 "every dimension must be at least 1",
             ));
         }
-        // Three 64-bit factors can leave even 128 bits; saturated they still are over any budget.
+        // The product of three 64-bit factors can overflow even 128 bits; the saturated value still exceeds any
+        // budget.
         let voxels = dims.iter().fold(1u128, |product, &n| product.saturating_mul(u128::from(n)));
         let bytes = voxels.saturating_mul(voxel_type.bytes() as u128);
-        // On a 32-bit system the budget may be larger than what can be addressed.
+        // On a 32-bit system the budget may exceed the address space.
         let narrow = |n: u64| usize::try_from(n).ok();
         let (Some(x), Some(y), Some(z), Ok(voxels), Ok(bytes)) =
             (narrow(x), narrow(y), narrow(z), usize::try_from(voxels), u64::try_from(bytes))
@@ -134,7 +136,7 @@ impl Extent {
         Ok(Self { dims, voxels, bytes, wanted, read: wanted })
     }
 
-    /// Asks who waits for the volume whether it is read like this, unless that was said.
+    /// Asks the load control whether to read a volume of this size, unless the user has chosen a portion.
     fn weighed(&self, voxel_type: VoxelType, room: Room<'_>, is_read_whole: bool) -> Result<(), LoadError> {
         if room.choice.portion.is_some()
             || room.control.accepts(&Size { dims: self.dims, voxel_type, is_read_whole })
@@ -145,7 +147,7 @@ impl Extent {
         }
     }
 
-    /// Checks that there is room for what is read, and for what is made of that.
+    /// Checks that the voxels that are read, and those derived from them, fit into the budget.
     fn within(
         self,
         attempt: Attempt<'_>,
@@ -173,7 +175,7 @@ impl Extent {
         ))
     }
 
-    /// What helps where not all of it has room.
+    /// Help text for a volume that exceeds the budget: the finest subsampling and block size that fit.
     fn help(&self, voxel_type: VoxelType, room: Room<'_>, is_read_whole: bool) -> String {
         const OTHERWISE: &str =
             "check the dimensions, close other programs, or load a smaller or cropped volume";
@@ -205,13 +207,14 @@ impl Extent {
             + "--region X0:X1,Y0:Y1,Z0:Z1 reads a part; or check the dimensions, or close other programs"
     }
 
-    /// Bytes for what is read, for what is made of it, and for what is read at a time.
+    /// Returns the bytes for voxels kept while reading, for voxels derived from them, and for buffers in use at a
+    /// time.
     fn needed_bytes(&self, voxel_type: VoxelType) -> u128 {
         needed_bytes(&self.read, &self.wanted, voxel_type)
     }
 }
 
-/// Whether blocks are averaged while they are read even where there is room for all: only in tests of that.
+/// True if blocks are averaged while reading although everything fits; only tests can switch this on.
 #[cfg(not(test))]
 const fn is_short_of_room() -> bool {
     false
@@ -238,7 +241,7 @@ mod tests {
         LITTLE.get()
     }
 
-    /// Does something as if there were no room for blocks that are averaged afterwards.
+    /// Runs `what` as if memory were too short to average blocks after reading.
     pub(in crate::data) fn in_little_room<T>(what: impl FnOnce() -> T) -> T {
         LITTLE.set(true);
         let done = what();
@@ -271,7 +274,7 @@ mod tests {
 
     #[test]
     fn what_is_left_out_needs_no_room() {
-        // 8000 voxels of 2 bytes; every second are 1000.
+        // 8000 voxels of 2 bytes; a stride of 2 keeps 1000.
         let dims = [20, 20, 20];
         assert!(extent(dims, 2000, Portion::every(2)).is_ok_and(|extent| extent.wanted == extent.read));
         assert!(extent(dims, 1999, Portion::every(2)).is_err());
@@ -279,7 +282,7 @@ mod tests {
         assert!(extent(dims, 400, region("0:10,0:10,0:2")).is_ok());
         let outside = extent(dims, 400, region("0:21,:,:")).unwrap_err();
         assert_eq!(outside.kind(), LoadErrorKind::BadInput);
-        // Averaged afterwards where all of them have room beside the means, else two slices at a time, of 10 bytes each
+        // Averaged after reading if all voxels fit beside the means, otherwise two slices at a time, of 10 bytes per
         // voxel, beside the means and one voxel of each block.
         assert!(extent(dims, 18_000, Portion::average(2)).is_ok_and(|extent| extent.read.is_all()));
         assert!(extent(dims, 17_999, Portion::average(2)).is_ok_and(|extent| extent.wanted == extent.read));

@@ -1,36 +1,36 @@
-//! How much memory this program may still take: what the machine has, what its container is allowed, and what the
-//! user's limits leave (`ulimit -v`). The least of them counts.
+//! Memory still available to this process: the least of the machine's free memory, the limit of its control group
+//! (container), and the limit on address space (`ulimit -v`).
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Bytes that may still be taken, as far as the system says.
+/// Returns the bytes that may still be allocated, if the system reports any limit.
 pub(super) fn free_bytes() -> Option<u64> {
     let root = Path::new("/");
     [available(root), left_of_container(root), left_of_addresses(root)].into_iter().flatten().min()
 }
 
-/// Bytes of addresses that are left under the limit of this process; `None` without a limit.
+/// Returns the bytes of address space left under the limit of this process; `None` without a limit.
 pub(crate) fn address_bytes_left() -> Option<u64> {
     left_of_addresses(Path::new("/"))
 }
 
-/// `MemAvailable` of `/proc/meminfo`.
+/// Reads `MemAvailable` of `/proc/meminfo`, in bytes.
 fn available(root: &Path) -> Option<u64> {
     kibibytes(&text(&root.join("proc/meminfo"))?, "MemAvailable:")
 }
 
-/// The limit of addresses (`RLIMIT_AS`) less those in use.
+/// Returns the limit of address space (`RLIMIT_AS`) minus the part in use, in bytes.
 fn left_of_addresses(root: &Path) -> Option<u64> {
     let limits = text(&root.join("proc/self/limits"))?;
     let soft = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
-    // `unlimited` is no number.
+    // The word `unlimited` fails to parse.
     let limit: u64 = soft.split_whitespace().next()?.parse().ok()?;
     let used = kibibytes(&text(&root.join("proc/self/status"))?, "VmSize:")?;
     Some(limit.saturating_sub(used))
 }
 
-/// What the control groups of this process leave, of either version.
+/// Returns the bytes left in the control groups of this process, version 1 or 2.
 fn left_of_container(root: &Path) -> Option<u64> {
     let groups = text(&root.join("proc/self/cgroup"))?;
     let left = |line: &str| {
@@ -45,10 +45,11 @@ fn left_of_container(root: &Path) -> Option<u64> {
         };
         let mount = root.join(mount);
         let own = mount.join(path.trim_start_matches('/'));
-        // A group has what all above it leave. A container may see its own group as the root, under another's path.
+        // A group is limited by all its ancestors, too. A container may see its own group as the root, under a
+        // foreign path.
         let of = |group: &Path| {
             let number = |name: &str| text(&group.join(name))?.trim().parse::<u64>().ok();
-            // What of files is kept in memory is given back when it is needed.
+            // The page cache is reclaimed on demand, so inactive file pages count as free.
             let stat = text(&group.join("memory.stat")).unwrap_or_default();
             let of_files =
                 stat.lines().find_map(|line| line.strip_prefix("inactive_file ")?.trim().parse().ok());
@@ -62,7 +63,7 @@ fn left_of_container(root: &Path) -> Option<u64> {
     groups.lines().filter_map(left).min()
 }
 
-/// A number in KiB behind a name at the beginning of a line.
+/// Parses a number in KiB after a name at the start of a line; returns bytes.
 fn kibibytes(text: &str, name: &str) -> Option<u64> {
     let line = text.lines().find_map(|line| line.strip_prefix(name))?;
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
@@ -76,7 +77,7 @@ fn text(path: &Path) -> Option<String> {
 mod tests {
     use super::*;
 
-    /// A system of files as Linux has them.
+    /// Creates a temporary directory with files laid out like Linux's /proc and /sys.
     fn system(files: &[(&str, &str)]) -> tempfile::TempDir {
         let root = tempfile::tempdir().unwrap();
         for (name, text) in files {

@@ -1,21 +1,21 @@
-//! What a file holds beside the one volume that is opened of it, for a window in which another can be chosen.
+//! Inventory of a file: the volumes, channels, time steps and components it holds beside the one that was opened.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::offer::{Dimension, Offer};
 use super::portion::Portion;
 
-/// In what volumes of a file differ.
+/// Aspect in which the volumes of a file differ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Aspect {
-    /// Series, channels, time steps or arrays.
+    /// Several series, channels, time steps or arrays.
     Of(Dimension),
-    /// What is shown of voxels of several numbers.
+    /// Components of voxels with several numbers each.
     Component,
 }
 
 impl Aspect {
-    /// All of them, in the order in which people choose.
+    /// All aspects, in the order in which the user selects.
     pub const ALL: [Self; 5] = [
         Self::Of(Dimension::Series),
         Self::Of(Dimension::Array),
@@ -24,13 +24,13 @@ impl Aspect {
         Self::Component,
     ];
 
-    /// Whether a volume is shown with the look of another that differs from it in this: both are of one thing, with the
-    /// same values.
+    /// Returns true if a volume takes over the look of another one that differs in this aspect: both show the same
+    /// object with the same range of values.
     pub fn keeps_look(self) -> bool {
         matches!(self, Self::Of(Dimension::Frame) | Self::Component)
     }
 
-    /// The option of the command line that chooses.
+    /// Returns the command-line option that selects in this aspect.
     pub fn option(self) -> &'static str {
         match self {
             Self::Of(dimension) => dimension.option(),
@@ -38,7 +38,7 @@ impl Aspect {
         }
     }
 
-    /// Several of them, in words.
+    /// Returns the plural name, for messages.
     pub fn plural(self) -> &'static str {
         match self {
             Self::Of(dimension) => dimension.plural(),
@@ -46,7 +46,7 @@ impl Aspect {
         }
     }
 
-    /// Its place in [`Self::ALL`].
+    /// Returns the index of this aspect in [`Self::ALL`].
     pub fn index(self) -> usize {
         Self::ALL.iter().position(|&other| other == self).unwrap_or_default()
     }
@@ -55,61 +55,61 @@ impl Aspect {
 /// Several volumes of a file, one of which was opened.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Several {
-    /// In what they differ.
+    /// Dimension in which the volumes differ.
     pub dimension: Dimension,
-    /// All of them: two at least.
+    /// All volumes, at least two.
     pub offers: Vec<Offer>,
-    /// Which of them was opened.
+    /// Index of the volume that was opened.
     pub at: usize,
-    /// What was asked for, if that is none of them: the first was opened then.
+    /// Selection that matched no volume, if any; the first volume was opened instead.
     pub missed: Option<String>,
 }
 
-/// What voxels of several numbers show when no component is named.
+/// Value shown for voxels of several numbers when no component is selected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Whole {
-    /// The length of the vector.
+    /// Length (magnitude) of the vector.
     Magnitude,
-    /// How light the colour is.
+    /// Luminance of the linear colour.
     Luminance,
-    /// The first component: of grey with its opacity, and of layers.
+    /// First component: the grey value if an opacity follows it, or the first layer.
     First,
 }
 
-/// Voxels of several numbers, of which one is shown, or what all of them make.
+/// Components of voxels that hold several numbers each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Components {
-    /// How many numbers a voxel has: two at least.
+    /// Numbers per voxel, at least two.
     pub count: usize,
-    /// Whether they are a colour: red, green and blue, perhaps with an opacity after them.
+    /// True if they are a colour: red, green and blue, possibly followed by an opacity.
     pub is_color: bool,
-    /// What they show where none is named.
+    /// Value shown when no component is selected.
     pub whole: Whole,
-    /// The component that is shown, from 0, if one was named.
+    /// Index of the component that is shown, from 0, if one was selected.
     pub shown: Option<usize>,
 }
 
-/// All that a file holds, as far as it was read for one volume.
+/// Inventory of a file, to the extent that it was read to open one volume.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Held {
-    /// A row for each way in which volumes of it differ.
+    /// One entry for each dimension in which the file's volumes differ.
     pub several: Vec<Several>,
-    /// Of voxels of several numbers.
+    /// Components of a voxel, if there are several.
     pub components: Option<Components>,
-    /// Voxels along x, y, z of the grid, where it is known.
+    /// Voxels of the grid along x, y, z, if known.
     pub grid: Option<[usize; 3]>,
-    /// What of that was read.
+    /// Portion of the grid that was read.
     pub portion: Portion,
 }
 
 impl Held {
-    /// The volumes that differ in a dimension.
+    /// Returns the volumes that differ in a dimension.
     pub fn of(&self, dimension: Dimension) -> Option<&Several> {
         self.several.iter().find(|several| several.dimension == dimension)
     }
 }
 
-/// Where readers write down what they have found, while they open the first volume of several.
+/// Recorder of the volumes that readers find while they open one of them; clones share the record.
 #[derive(Debug, Clone, Default)]
 pub struct Watch(Arc<Mutex<Seen>>);
 
@@ -117,11 +117,11 @@ pub struct Watch(Arc<Mutex<Seen>>);
 struct Seen {
     held: Held,
     is_averaged: bool,
-    /// Aspects that a reader has asked the choice for, of several volumes or of one.
+    /// Aspects in which a reader has queried the choice, among several volumes or only one.
     asked: Vec<Aspect>,
 }
 
-/// Only a watch itself is the same.
+/// Watches are equal only if they share their record.
 impl PartialEq for Watch {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
@@ -131,17 +131,17 @@ impl PartialEq for Watch {
 impl Eq for Watch {}
 
 impl Watch {
-    /// What was found until now.
+    /// Returns a copy of the inventory recorded so far.
     pub fn held(&self) -> Held {
         self.seen().held.clone()
     }
 
-    /// Whether blocks were averaged while they were read.
+    /// Returns true if blocks were averaged while they were read.
     pub(in crate::data) fn has_averaged(&self) -> bool {
         self.seen().is_averaged
     }
 
-    /// True where a reader has asked which of them is meant.
+    /// Returns true if a reader has queried the choice in this aspect.
     pub(super) fn was_asked(&self, aspect: Aspect) -> bool {
         self.seen().asked.contains(&aspect)
     }
@@ -159,7 +159,7 @@ impl Watch {
 
     pub(super) fn saw_several(&self, several: Several) {
         let held = &mut self.seen().held;
-        // A header beside its data is read twice.
+        // The header of a data file may be read twice; the later record replaces the earlier.
         held.several.retain(|known| known.dimension != several.dimension);
         held.several.push(several);
     }

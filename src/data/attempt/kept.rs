@@ -1,32 +1,32 @@
-//! Which voxels of a grid are kept.
+//! Voxels of a grid that are kept by a portion: box, stride and block averages.
 
 use super::portion::{LONGEST_STEP, Portion, Region, Thinning};
 
-/// A portion of a grid of known size.
+/// Portion resolved for a grid of known size.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::data) struct Kept {
-    /// Voxels of the grid along x, y, z.
+    /// Number of voxels of the grid along x, y, z.
     pub(in crate::data) grid: [usize; 3],
-    /// The first voxel of the box along each axis.
+    /// First voxel of the box along each axis.
     pub(in crate::data) low: [usize; 3],
-    /// The first behind it.
+    /// End of the box along each axis, exclusive.
     pub(in crate::data) high: [usize; 3],
-    /// Voxels along each axis for which one stands: no more than the box has.
+    /// Stride, or edge of a block, in voxels along each axis; at most the edge of the box.
     pub(in crate::data) step: [usize; 3],
-    /// Whether one is made of all of them; else it is the first.
+    /// True if each block is averaged; otherwise its first voxel is kept.
     pub(in crate::data) is_averaged: bool,
-    /// Whether they are labels, whose numbers have no mean.
+    /// True if voxels are labels, whose numbers have no mean.
     pub(in crate::data) are_labels: bool,
 }
 
 impl Kept {
-    /// All voxels.
+    /// Returns the portion that keeps all voxels.
     pub(in crate::data) fn all(grid: [usize; 3]) -> Self {
         let (is_averaged, are_labels) = (false, false);
         Self { grid, low: [0; 3], high: grid, step: [1; 3], is_averaged, are_labels }
     }
 
-    /// What of a grid is kept; nothing where a box is empty or reaches beyond it.
+    /// Resolves a portion for a grid; `None` if its box is empty or reaches beyond the grid.
     pub(in crate::data) fn of(portion: &Portion, grid: [usize; 3], are_labels: bool) -> Option<Self> {
         let ends = |Region(stretches): Region| {
             [0, 1, 2].map(|axis| (stretches[axis].first, stretches[axis].end.unwrap_or(grid[axis])))
@@ -42,27 +42,27 @@ impl Kept {
         Some(Self { grid, low, high, step, is_averaged, are_labels })
     }
 
-    /// The box of it, with all of its voxels.
+    /// Returns the box of this portion with all its voxels.
     pub(in crate::data) fn boxed(self) -> Self {
         Self { step: [1; 3], is_averaged: false, ..self }
     }
 
-    /// What is read to make it: the box of what is averaged, else the voxels themselves.
+    /// Returns the voxels that must be read: the full box if blocks are averaged, otherwise only the kept voxels.
     pub(in crate::data) fn boxed_if_averaged(self) -> Self {
         if self.is_averaged { self.boxed() } else { self }
     }
 
-    /// Whether nothing is left out.
+    /// Returns true if no voxel is left out.
     pub(in crate::data) fn is_all(&self) -> bool {
         *self == Self { are_labels: self.are_labels, ..Self::all(self.grid) }
     }
 
-    /// The slices of the grid that are needed.
+    /// Returns the indices of the slices that must be read.
     pub(in crate::data) fn slices(&self) -> impl Iterator<Item = usize> + use<> {
         (self.low[2]..self.high[2]).step_by(if self.is_averaged { 1 } else { self.step[2] })
     }
 
-    /// What of [these slices](Self::slices) is kept, where they are a grid of their own.
+    /// Returns this portion relative to a grid that consists only of [the slices read](Self::slices).
     pub(in crate::data) fn of_slices(self) -> Self {
         let count = self.slices().count();
         let step = if self.is_averaged { self.step[2] } else { 1 };
@@ -71,7 +71,7 @@ impl Kept {
         Self { grid: with(self.grid, count), low, high, step: with(self.step, step), ..self }
     }
 
-    /// What of a slice's voxels is kept.
+    /// Copies the kept voxels of one slice into `kept`.
     pub(in crate::data) fn pick_in_slice<T: Copy>(&self, slice: &[T], kept: &mut [T]) {
         let rows = (self.low[1]..self.high[1]).step_by(self.step[1]);
         for (row, kept) in rows.zip(kept.chunks_mut(self.dims()[0])) {
@@ -82,18 +82,18 @@ impl Kept {
         }
     }
 
-    /// Voxels of the box along each axis.
+    /// Returns the number of voxels of the box along each axis.
     pub(in crate::data) fn edges(&self) -> [usize; 3] {
         [0, 1, 2].map(|axis| self.high[axis] - self.low[axis])
     }
 
-    /// Voxels that are kept along each axis.
+    /// Returns the number of kept voxels along each axis.
     pub(in crate::data) fn dims(&self) -> [usize; 3] {
         let edges = self.edges();
         [0, 1, 2].map(|axis| edges[axis].div_ceil(self.step[axis]))
     }
 
-    /// How many voxels are kept; no more than can be counted.
+    /// Returns the number of kept voxels, saturated at `usize::MAX`.
     pub(in crate::data) fn count(&self) -> usize {
         self.dims().into_iter().fold(1, usize::saturating_mul)
     }

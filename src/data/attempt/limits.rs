@@ -1,25 +1,25 @@
-//! How much memory volumes may take, and which distances between voxels can be used.
+//! Limits of volumes: the memory budget, and the range of usable voxel spacings.
 
 use glam::DAffine3;
 
 use super::free_memory::free_bytes;
 
-/// The budget where the system does not say how much memory it has.
+/// Memory budget if the system does not report its free memory.
 const FALLBACK_BUDGET_BYTES: u64 = 4 << 30;
 
-/// Distances between voxels outside this range are mistakes, and would upset every computation.
+/// Range of usable voxel spacings; values outside it are mistakes, and would upset every computation.
 const SPACING_RANGE_MM: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
-/// How much longer one distance between voxels may be than another: that of slices a millimetre apart to pixels of 0.1 µm.
-/// Steps through the volume are as short as the shortest, so that their number grows with this.
+/// Maximum ratio of voxel spacings along two axes: slices 1 mm apart with pixels of 0.1 µm. Steps through the volume
+/// are as short as the shortest spacing, so their number grows with this ratio.
 const MAX_SPACING_RATIO: f64 = 1e4;
 
-/// Whether a distance between voxels can be used.
+/// Returns true if a voxel spacing is within the usable range.
 pub(in crate::data) fn is_usable_spacing(spacing_mm: f64) -> bool {
     SPACING_RANGE_MM.contains(&spacing_mm)
 }
 
-/// Why the distances between voxels along three axes cannot be used together.
+/// Returns the reason why the voxel spacings along the three axes cannot be combined, if their ratio is too large.
 pub(in crate::data) fn unlike_spacings(spacings_mm: [f64; 3]) -> Option<String> {
     let shortest = spacings_mm.into_iter().fold(f64::INFINITY, f64::min);
     let longest = spacings_mm.into_iter().fold(0.0, f64::max);
@@ -28,7 +28,7 @@ pub(in crate::data) fn unlike_spacings(spacings_mm: [f64; 3]) -> Option<String> 
     })
 }
 
-/// Whether an affine has usable, independent axes and a finite origin.
+/// Returns true if an affine transform has usable, linearly independent axes and a finite origin.
 pub(in crate::data) fn is_usable_affine(world_from_index: &DAffine3) -> bool {
     let axes = world_from_index.matrix3;
     let lengths = [axes.x_axis, axes.y_axis, axes.z_axis].map(glam::DVec3::length);
@@ -36,12 +36,12 @@ pub(in crate::data) fn is_usable_affine(world_from_index: &DAffine3) -> bool {
     world_from_index.is_finite() && lengths.into_iter().all(is_usable_spacing) && flatness > 1e-6
 }
 
-/// Three quarters of the memory that may still be taken, or 4 GiB where that is not known.
+/// Returns three quarters of the memory still available, or 4 GiB if that is unknown.
 pub(crate) fn default_budget_bytes() -> u64 {
     free_bytes().map_or(FALLBACK_BUDGET_BYTES, |free| free / 4 * 3)
 }
 
-/// A number of bytes for a message: exact when small, else in the largest unit that fits.
+/// Formats a number of bytes for a message: exact when small, otherwise in the largest unit that fits.
 pub(crate) fn human_bytes(bytes: u128) -> String {
     const UNITS: [&str; 6] = ["KiB", "MiB", "GiB", "TiB", "PiB", "EiB"];
     if bytes < 10 * 1024 {

@@ -1,5 +1,5 @@
-//! What reading files and making built-in volumes share: memory limits, errors in words that help, and a control to
-//! watch and to cancel the work.
+//! Infrastructure shared by readers and built-in volumes: memory limits, errors with advice, and a control for
+//! progress and cancellation.
 
 mod choice;
 mod control;

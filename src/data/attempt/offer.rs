@@ -1,22 +1,22 @@
-//! Volumes of one file, and in what they differ.
+//! Volumes offered by one file, and the dimensions in which they differ.
 
 use std::fmt;
 
-/// A way in which the volumes of a file differ.
+/// Dimension in which the volumes of a file differ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Dimension {
-    /// Time steps of one thing.
+    /// Time steps of a single object.
     Frame,
-    /// What several detectors or dyes have seen at once.
+    /// Channels recorded at the same time by several detectors or dyes.
     Channel,
-    /// Scans in one folder.
+    /// Scans in a single folder.
     Series,
-    /// Arrays in one archive.
+    /// Arrays in a single archive.
     Array,
 }
 
 impl Dimension {
-    /// The option of the command line that chooses.
+    /// Returns the command-line option that selects in this dimension.
     pub fn option(self) -> &'static str {
         match self {
             Self::Frame => "--frame",
@@ -26,7 +26,7 @@ impl Dimension {
         }
     }
 
-    /// Several of them, in words.
+    /// Returns the plural name, for messages.
     pub fn plural(self) -> &'static str {
         match self {
             Self::Frame => "time steps",
@@ -37,19 +37,19 @@ impl Dimension {
     }
 }
 
-/// One of several volumes.
+/// One of the volumes that a file offers.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Offer {
-    /// By what it is chosen: a number from 0, or a name.
+    /// Key by which it is selected: a number from 0, or a name.
     pub key: String,
-    /// What the file calls it; short and harmless, may be empty.
+    /// Name that the file gives it; short, sanitised, possibly empty.
     pub name: String,
-    /// Voxels along x, y, z, where they are known.
+    /// Voxels along x, y, z, if known.
     pub dims: Option<[u64; 3]>,
 }
 
 impl Offer {
-    /// A volume that is chosen by its number alone.
+    /// Creates an offer that is selected by its number alone.
     pub fn numbered(number: usize, name: &str, dims: [u64; 3]) -> Self {
         Self { key: number.to_string(), name: crate::data::plain(name.trim(), 80), dims: Some(dims) }
     }

@@ -1,70 +1,70 @@
-//! How much of a file's grid is read: all of it, a box, every so manyth voxel, or the means of blocks.
+//! Portion of a file's grid that is read: all voxels, a region, a subsampling, or block averages.
 
 use std::fmt;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-/// The longest step from a voxel to the next that is kept, and the longest edge of a block. What is larger leaves nothing
-/// to see even of the longest axes, and a row of voxels of so many steps is still a small buffer.
+/// Maximum stride of a subsampling, and maximum edge of a block, in voxels. Larger ones leave nothing visible even of
+/// the longest axes, and a row of this many voxels is still a small buffer.
 pub(super) const LONGEST_STEP: usize = 4096;
 
-/// What is read of a volume.
+/// Portion of a volume that is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Portion {
-    /// A box, in voxels of the file; all of them without one.
+    /// Region in voxels of the file; `None` for the whole grid.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub region: Option<Region>,
-    /// How many voxels of that are kept.
+    /// Reduction of the voxels within the region.
     #[serde(skip_serializing_if = "Thinning::is_none")]
     pub thinning: Thinning,
 }
 
-/// How many voxels of a box are kept.
+/// Reduction of the voxels of a region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Thinning {
-    /// All of them.
+    /// All voxels are kept.
     #[default]
     None,
-    /// Along each axis the first, and then every so manyth.
+    /// Subsampling: along each axis the first voxel, then every n-th.
     Every(usize),
-    /// The means of blocks of so many voxels along each axis; of labels the most frequent.
+    /// Averages of blocks of n voxels along each axis; for labels the most frequent one.
     Average(usize),
 }
 
-/// A box of voxels, whose ends may be left to the volume.
+/// Box of voxels, any end of which may be left open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Region(pub [Stretch; 3]);
 
-/// Voxels along an axis.
+/// Range of voxels along an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stretch {
-    /// The first, from 0.
+    /// First voxel of the range, from 0.
     pub first: usize,
-    /// The first that is not among them any more; behind the last where it is not said.
+    /// End of the range, exclusive; `None` for the end of the axis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub end: Option<usize>,
 }
 
 impl Portion {
-    /// Whether nothing is left out.
+    /// Returns true if no voxel is left out.
     pub fn is_whole(&self) -> bool {
         self.region.is_none() && self.thinning.step() == 1
     }
 
-    /// Every so manyth voxel of all of them.
+    /// Returns the subsampling of the whole grid with the given stride.
     pub fn every(step: usize) -> Self {
         Self { region: None, thinning: Thinning::Every(step) }
     }
 
-    /// Means of blocks of all voxels.
+    /// Returns the averages of blocks of the whole grid with the given edge.
     pub fn average(block: usize) -> Self {
         Self { region: None, thinning: Thinning::Average(block) }
     }
 
-    /// What is read, in words after which the grid is named: `every 2nd voxel of`.
+    /// Describes the portion in words, to be followed by the grid: `every 2nd voxel of`.
     pub fn in_words(&self) -> String {
         let thinning = match (self.thinning, self.thinning.step()) {
             (_, 1) => "",
@@ -79,7 +79,7 @@ impl Portion {
 }
 
 impl Thinning {
-    /// Voxels of the file along each axis for which one stands.
+    /// Returns the stride, or the edge of a block, in voxels of the file.
     pub fn step(self) -> usize {
         match self {
             Self::None => 1,
@@ -92,7 +92,7 @@ impl Thinning {
     }
 }
 
-/// `0:10,5:,:`
+/// Parses text such as `0:10,5:,:`.
 impl FromStr for Region {
     type Err = String;
 
@@ -150,7 +150,7 @@ mod tests {
             assert_eq!(serde_json::to_string(&portion).unwrap(), text);
             assert_eq!(serde_json::from_str::<Portion>(text).unwrap(), portion);
         }
-        // From a session of somebody else's.
+        // A value that no version writes, as from an edited session file.
         let odd: Portion = serde_json::from_str(r#"{"thinning":{"every":0}}"#).unwrap();
         assert!(odd.is_whole());
     }

@@ -1,39 +1,39 @@
-//! What volumes take of the memory, known before any of their voxels is read.
+//! Memory estimate of a volume, known before any of its voxels is read.
 
 use super::kept::Kept;
 use super::portion::Portion;
 use crate::data::VoxelType;
 
-/// Bytes beside the voxels for what is found of each brick of 8³: bounds of its 64 cells, of itself, and which of them are
-/// seen.
+/// Bytes of derived data for each brick of 8³ voxels: bounds of its 64 cells, its own bounds, and its visibility
+/// masks.
 const BYTES_OF_BRICK: usize = 64 * 2 + 8 + 2 * 8;
 
-/// Voxels of a brick.
+/// Number of voxels in a brick.
 const BRICK: usize = 8 * 8 * 8;
 
-/// The size of a file's grid.
+/// Size of a file's grid and type of its voxels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Size {
-    /// Voxels along x, y, z.
+    /// Number of voxels along x, y, z.
     pub dims: [usize; 3],
-    /// Their type, at most: whole numbers of 64 bits may take less.
+    /// Type of the voxels, an upper bound: 64-bit integers may be stored in fewer bytes.
     pub voxel_type: VoxelType,
-    /// Whether all voxels must be read before any can be left out.
+    /// True if all voxels must be read before any can be dropped.
     pub is_read_whole: bool,
 }
 
 impl Size {
-    /// Voxels along x, y, z of a portion; nothing where it reaches beyond the grid.
+    /// Returns the dimensions of a portion in voxels; `None` if it reaches beyond the grid.
     pub fn dims_of(&self, portion: &Portion) -> Option<[usize; 3]> {
         Kept::of(portion, self.dims, false).map(|kept| kept.dims())
     }
 
-    /// Bytes of the file's voxels.
+    /// Returns the bytes of all voxels of the file.
     pub fn bytes(&self) -> u64 {
         saturated(bytes_of(&Kept::all(self.dims), self.voxel_type))
     }
 
-    /// Bytes of memory that a portion takes, with what is found of it, while it is opened; nothing where it reaches beyond
+    /// Returns the peak bytes of memory while a portion is opened, with its derived data; `None` if it reaches beyond
     /// the grid.
     pub fn host_bytes(&self, portion: &Portion) -> Option<u64> {
         let wanted = Kept::of(portion, self.dims, false)?;
@@ -58,18 +58,18 @@ fn bytes_of(kept: &Kept, voxel_type: VoxelType) -> u128 {
     voxels.saturating_mul(voxel_type.bytes() as u128)
 }
 
-/// Bytes for what is read, for what is made of it, and for what is read at a time.
+/// Returns the bytes for voxels kept while reading, for voxels derived from them, and for buffers in use at a time.
 pub(super) fn needed_bytes(read: &Kept, wanted: &Kept, voxel_type: VoxelType) -> u128 {
     let kept = bytes_of(read, voxel_type);
     if read != wanted {
-        // Voxels that are picked are moved to the front of those that were read.
+        // Picked voxels are compacted in place, at the front of the voxels that were read.
         return kept.saturating_add(if wanted.is_averaged { bytes_of(wanted, voxel_type) } else { 0 });
     }
     if !read.is_averaged {
         return kept;
     }
-    // Beside the means one voxel of each block, which tells labels; and as many slices as a block is deep, which are of
-    // numbers of at most 8 bytes once they mean what the file says.
+    // Beside the means: one voxel of each block, for the detection of labels; and as many slices as a block is deep,
+    // both as stored and converted to numbers of at most 8 bytes.
     let [x, y, _] = read.edges();
     let slab = x as u128 * y as u128 * read.step[2] as u128;
     kept.saturating_mul(2)
@@ -85,7 +85,7 @@ mod tests {
         let size = Size { dims: [80, 80, 80], voxel_type: VoxelType::U16, is_read_whole: false };
         let host = |size: &Size, portion: Portion| size.host_bytes(&portion).unwrap();
         assert_eq!(size.bytes(), 1_024_000);
-        // 1000 bricks beside them.
+        // The bricks' data of 1000 bricks are added.
         assert_eq!(host(&size, Portion::default()), 1_024_000 + 152_000);
         assert_eq!(host(&size, Portion::every(2)), 128_000 + 19_000);
         // Means, one voxel of each block, and two slices at a time.

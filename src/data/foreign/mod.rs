@@ -1,4 +1,4 @@
-//! What others wrote: text made harmless, XML that is parsed in bounded time, and small files.
+//! Untrusted input: sanitising of text from files, XML parsing in bounded time, and bounded reading of small files.
 
 mod natural_order;
 mod small_file;

@@ -1,14 +1,15 @@
-//! The order in which people have names: `slice 9` before `slice 10`.
+//! Natural sort order of names: `slice 9` before `slice 10`.
 
-/// A piece of a name, so that numbers come in the order of their values.
+/// Piece of a name, ordered so that numbers sort by value.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Piece {
-    /// Digits without leading zeros, shorter ones first; then how many there were.
+    /// Digits without leading zeros, preceded by their count, so that shorter numbers sort first; then the count with
+    /// zeros.
     Number(usize, String, usize),
     Text(String),
 }
 
-/// By what names are put in natural order.
+/// Returns the key that sorts names in natural order, ignoring case.
 pub(crate) fn natural(name: &str) -> Vec<Piece> {
     let mut pieces = Vec::new();
     let mut rest = name;

@@ -1,31 +1,31 @@
-//! Files that are read whole because they are small: settings, presets, lists.
+//! Bounded reading of small files: settings, presets, lists.
 
 use std::io::Read as _;
 use std::path::Path;
 
-/// Largest file that is read this way: a thousand times the size of a real one.
+/// Maximum size of a small file: a thousand times that of a real one.
 const MOST_BYTES: u64 = 4 << 20;
 
-/// The bytes of a small file.
+/// Reads a small file completely.
 ///
 /// # Errors
-/// When it cannot be read, is no file (a folder, a device) or is too large.
+/// Fails if the file cannot be read, is not a regular file (but a folder or device), or is too large.
 pub fn read_small(path: &Path) -> std::io::Result<Vec<u8>> {
     let too_large = || std::io::Error::other("larger than 4 MiB, which settings never are");
     read_bounded(path, MOST_BYTES)?.ok_or_else(too_large)
 }
 
-/// The bytes of a regular file; none where it has more than `most_bytes`.
+/// Reads a regular file completely; `None` if it has more than `most_bytes` bytes.
 ///
 /// # Errors
-/// When it cannot be read, or is no file (a folder, a pipe, a device).
+/// Fails if the file cannot be read, or is not a regular file (but a folder, pipe or device).
 pub(crate) fn read_bounded(path: &Path, most_bytes: u64) -> std::io::Result<Option<Vec<u8>>> {
     let metadata = std::fs::metadata(path)?;
     if !metadata.is_file() {
         return Err(std::io::Error::other("not a regular file"));
     }
     let mut bytes = Vec::new();
-    // What is said of a file's length need not be true.
+    // The length in the metadata is not trusted: it may change, and is 0 for some special files.
     std::fs::File::open(path)?.take(most_bytes.saturating_add(1)).read_to_end(&mut bytes)?;
     Ok((bytes.len() as u64 <= most_bytes).then_some(bytes))
 }

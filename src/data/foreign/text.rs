@@ -1,6 +1,6 @@
-//! Text from outside, made harmless, and told apart.
+//! Sanitising of text from untrusted files, and its hash.
 
-/// Text from outside as one line of at most `longest` characters, for messages: control characters become `·`.
+/// Sanitises untrusted text for a message: at most `longest` characters, with control characters replaced by `·`.
 pub fn plain(text: &str, longest: usize) -> String {
     let mut characters = text.chars().map(|c| if is_odd(c) { '·' } else { c });
     let mut short: String = characters.by_ref().take(longest).collect();
@@ -10,18 +10,17 @@ pub fn plain(text: &str, longest: usize) -> String {
     short
 }
 
-/// Text from outside as one line of at most `longest` characters, to be kept: without control characters.
+/// Sanitises untrusted text for storage: one line of at most `longest` characters, with control characters removed.
 pub fn single_line(text: &str, longest: usize) -> String {
     text.chars().filter(|&c| !is_odd(c)).take(longest).collect()
 }
 
-/// Text that may hold words from outside, for a terminal: control characters other than the ends of lines become `·`.
+/// Sanitises text for a terminal: control characters other than line feeds become `·`.
 pub fn without_controls(text: &str) -> String {
     text.chars().map(|c| if c != '\n' && is_odd(c) { '·' } else { c }).collect()
 }
 
-/// Text that may hold words from outside, as one line for a terminal: its lines follow each other, and other control
-/// characters become `·`.
+/// Joins untrusted text to one line for a terminal; control characters other than line breaks become `·`.
 pub fn one_line(text: &str) -> String {
     let mut line = String::new();
     for part in text.lines().map(str::trim).filter(|part| !part.is_empty()) {
@@ -33,7 +32,7 @@ pub fn one_line(text: &str) -> String {
     without_controls(&line)
 }
 
-/// A number made from all of a text, the same in every version and on every machine: FNV-1a of 64 bits
+/// Returns a hash of a text that is stable across versions and machines: 64-bit FNV-1a
 /// (<https://datatracker.ietf.org/doc/html/rfc9923>).
 pub fn fingerprint(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
@@ -41,9 +40,9 @@ pub fn fingerprint(text: &str) -> u64 {
     })
 }
 
-/// Whether a character could disturb a terminal or turn the direction of a line.
+/// Returns true if a character could disturb a terminal or change the writing direction of a line.
 fn is_odd(c: char) -> bool {
-    // Also what stands for bytes that were no text, which few fonts have.
+    // The replacement character is included: it stands for bytes that were not valid text, and few fonts have it.
     c.is_control()
         || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
         || c == char::REPLACEMENT_CHARACTER

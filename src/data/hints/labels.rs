@@ -1,31 +1,30 @@
-//! What the numbers of a label map stand for.
+//! Names and colours of the labels of a label map.
 
 use std::collections::BTreeMap;
 
 use super::plain;
 
-/// Most labels that are kept: the finest atlases of brains have two thousand.
+/// Maximum number of labels that are stored: the finest atlases of brains have two thousand.
 pub const MAX_LABELS: usize = 4096;
 
-/// Characters of a label's name that are kept.
+/// Maximum length of a label's name, in characters.
 pub const MAX_LABEL_NAME: usize = 200;
 
-/// A label.
+/// Name and colour of a label.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Label {
-    /// What it is called, as one line without control characters; may be empty.
+    /// Name, as one line without control characters; may be empty.
     pub name: String,
-    /// sRGB, 0 … 1, where the file gives one.
+    /// Colour in sRGB, 0 … 1, if the file gives one.
     pub color: Option<[f32; 3]>,
 }
 
-/// Names and colours by the number that voxels have.
+/// Table of labels by the number that voxels hold.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Labels(BTreeMap<i64, Label>);
 
 impl Labels {
-    /// States what a number stands for, in the file's words. Of colours only those within 0 … 1 are kept; labels beyond
-    /// [`MAX_LABELS`] are not.
+    /// Adds a label as the file names it. Colours outside 0 … 1 and labels beyond [`MAX_LABELS`] are dropped.
     pub fn insert(&mut self, number: i64, name: &str, color: Option<[f32; 3]>) {
         if self.0.len() >= MAX_LABELS && !self.0.contains_key(&number) {
             return;
@@ -35,22 +34,22 @@ impl Labels {
         self.0.insert(number, label);
     }
 
-    /// What a number stands for.
+    /// Returns the label of a number, if the table has it.
     pub fn get(&self, number: i64) -> Option<&Label> {
         self.0.get(&number)
     }
 
-    /// All of them, by number.
+    /// Iterates over all labels in the order of their numbers.
     pub fn iter(&self) -> impl Iterator<Item = (i64, &Label)> {
         self.0.iter().map(|(&number, label)| (number, label))
     }
 
-    /// How many there are.
+    /// Returns the number of labels.
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// Whether there are none.
+    /// Returns true if the table has no label.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

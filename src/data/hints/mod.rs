@@ -1,5 +1,5 @@
-//! What a file says of its values beyond the values themselves: what they measure, which of them are no measurement,
-//! what labels are called. Every reader says here what it knows; the first look asks.
+//! Metadata of a file's values: modality, meaning, unit, padding value, display window and labels. Every reader fills
+//! in what its format knows; the first look is derived from it.
 
 mod labels;
 mod modality;
@@ -9,28 +9,28 @@ pub use self::modality::Modality;
 
 use super::foreign::plain;
 
-/// Characters of a unit that are kept: those that exist have a few.
+/// Maximum length of a unit in characters; real ones have a few.
 const MAX_UNIT: usize = 40;
 
-/// Characters of a description of how the data were acquired that are kept: a line.
+/// Maximum length of the acquisition's description, in characters: a line.
 const MAX_ACQUISITION: usize = 200;
 
-/// What the values of a volume stand for, where its file says so.
+/// Meaning of a volume's values, if its file states it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Meaning {
-    /// The file does not say.
+    /// The file does not state the meaning.
     #[default]
     Unknown,
     /// Hounsfield units: −1000 is air and 0 is water.
     HounsfieldUnits,
-    /// The number of what is there: nothing lies between two of them.
+    /// Labels, i.e. numbers of objects: values between two of them mean nothing.
     Labels,
-    /// More is more material, and what is below zero is noise: maps of electron density.
+    /// Density that grows with material, with noise below zero: maps of electron density.
     PositiveDensity,
 }
 
 impl Meaning {
-    /// What machines call it; nothing where it is not known.
+    /// Returns the identifier for machine-readable output; `None` if unknown.
     pub fn key(self) -> Option<&'static str> {
         match self {
             Self::Unknown => None,
@@ -40,7 +40,7 @@ impl Meaning {
         }
     }
 
-    /// What a name of a unit says of the values in it.
+    /// Derives the meaning of values from the name of their unit.
     pub fn of_unit(unit: &str) -> Self {
         let unit = unit.trim().to_lowercase();
         let is_hounsfield =
@@ -49,27 +49,28 @@ impl Meaning {
     }
 }
 
-/// What a file says of its values. Nothing of it need be true: files are not trusted.
+/// Metadata of a file's values. None of it is trusted to be true.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Hints {
-    /// How the data were acquired.
+    /// Modality by which the data were acquired.
     pub modality: Modality,
-    /// What the values stand for.
+    /// Meaning of the values, such as Hounsfield units.
     pub meaning: Meaning,
-    /// The values were brought from their own range into that of the number type: they have no absolute meaning.
+    /// True if values were rescaled to the range of the number type, so that they have no absolute meaning.
     pub is_rescaled: bool,
-    /// The value of voxels that were not measured.
+    /// Padding value, of voxels that were not measured.
     pub padding: Option<f64>,
-    /// The values between which it suggests to show greys.
+    /// Display window that the file suggests: the values shown as black and as white.
     pub window: Option<[f64; 2]>,
-    /// What labels are called, and their colours.
+    /// Names and colours of labels.
     pub labels: Labels,
     unit: Option<String>,
     acquisition: Option<String>,
 }
 
 impl Hints {
-    /// States the unit of the values in the file's words, and what follows from it. An empty one says nothing.
+    /// Sets the unit of the values in the file's words, and the meaning that follows from it. An empty unit is
+    /// ignored.
     pub fn set_unit(&mut self, unit: &str) {
         self.unit = told(unit, MAX_UNIT).or_else(|| self.unit.take());
         if self.meaning == Meaning::Unknown {
@@ -77,39 +78,39 @@ impl Hints {
         }
     }
 
-    /// The unit of the values, as one line without control characters.
+    /// Returns the unit of the values, as one line without control characters.
     pub fn unit(&self) -> Option<&str> {
         self.unit.as_deref()
     }
 
-    /// States in the file's words how the data were acquired. Empty ones say nothing.
+    /// Sets the description of the acquisition in the file's words. An empty one is ignored.
     pub fn set_acquisition(&mut self, acquisition: &str) {
         self.acquisition = told(acquisition, MAX_ACQUISITION).or_else(|| self.acquisition.take());
     }
 
-    /// How the data were acquired, as one line without control characters.
+    /// Returns the description of the acquisition, as one line without control characters.
     pub fn acquisition(&self) -> Option<&str> {
         self.acquisition.as_deref()
     }
 
-    /// States the value of voxels that were not measured; what is no finite number says nothing.
+    /// Sets the padding value, of voxels that were not measured; a value that is not finite is ignored.
     pub fn set_padding(&mut self, padding: f64) {
         self.padding = Some(padding).filter(|padding| padding.is_finite()).or(self.padding);
     }
 
-    /// States between which values greys are to be shown; two that are not finite, or not in order, say nothing.
+    /// Sets the display window; bounds that are not finite or not ascending are ignored.
     pub fn set_window(&mut self, low: f64, high: f64) {
         let is_usable = low.is_finite() && high.is_finite() && low < high;
         self.window = is_usable.then_some([low, high]).or(self.window);
     }
 
-    /// Whether the file says nothing at all.
+    /// Returns true if the file states no metadata at all.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 }
 
-/// Text from outside, if there is any.
+/// Trims and sanitises text from a file; `None` if it is empty.
 fn told(text: &str, longest: usize) -> Option<String> {
     let text = text.trim();
     (!text.is_empty()).then(|| plain(text, longest))

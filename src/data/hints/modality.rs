@@ -1,35 +1,35 @@
-//! How data were acquired.
+//! Modality of a volume: the kind of device or computation it comes from.
 
-/// The kinds of devices and computations that volumes come from, as far as they differ in how they are best shown.
+/// Modality, distinguished where volumes are best shown differently.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Modality {
-    /// The file does not say.
+    /// The file does not state the modality.
     #[default]
     Unknown,
-    /// Computed tomography, of patients or of things.
+    /// Computed tomography, of patients or of objects.
     Ct,
-    /// Magnetic resonance.
+    /// Magnetic resonance imaging (MRI).
     Mr,
-    /// Positron emission tomography.
+    /// Positron emission tomography (PET).
     Pet,
-    /// Single photon emission and other nuclear imaging.
+    /// Single-photon emission tomography and other nuclear imaging.
     Nuclear,
-    /// Ultrasound.
+    /// Ultrasound, including intravascular ultrasound.
     Ultrasound,
     /// Rotational angiography and other X-ray imaging.
     XRay,
     /// Optical coherence tomography.
     OpticalCoherence,
-    /// Light microscopy, fluorescence above all.
+    /// Light microscopy, mostly of fluorescence.
     LightMicroscopy,
-    /// Electron microscopy, crystallography and what is computed from them: densities of molecules.
+    /// Electron microscopy, crystallography and quantities computed from them, such as densities of molecules.
     ElectronMicroscopy,
-    /// Numbers of segments.
+    /// Segmentation: voxels hold numbers of segments.
     Segmentation,
 }
 
 impl Modality {
-    /// What machines call it; nothing where it is not known.
+    /// Returns the identifier for machine-readable output; `None` if unknown.
     pub fn key(self) -> Option<&'static str> {
         Some(match self {
             Self::Unknown => return None,
@@ -46,7 +46,7 @@ impl Modality {
         })
     }
 
-    /// Its code of DICOM (0008,0060); nothing where it is not known.
+    /// Returns the code of DICOM (0008,0060); `None` if unknown.
     pub fn code(self) -> Option<&'static str> {
         Some(match self {
             Self::Unknown => return None,
@@ -58,13 +58,13 @@ impl Modality {
             Self::XRay => "XA",
             Self::OpticalCoherence => "OCT",
             Self::LightMicroscopy => "SM",
-            // DICOM has none for it.
+            // Not a code of DICOM, which has none for it.
             Self::ElectronMicroscopy => "EM",
             Self::Segmentation => "SEG",
         })
     }
 
-    /// What a code of DICOM (0008,0060), or a word for it, stands for.
+    /// Parses a code of DICOM (0008,0060), or a common word for the modality.
     pub fn of_code(code: &str) -> Self {
         match code.trim().to_lowercase().as_str() {
             "ct" | "computed tomography" | "microct" | "micro-ct" | "µct" | "cbct" => Self::Ct,
@@ -83,10 +83,10 @@ impl Modality {
         }
     }
 
-    /// What a free description says by the words that stand for nothing else.
+    /// Finds the modality in a free description, by abbreviations that mean nothing else.
     pub fn of_description(text: &str) -> Self {
         let mut words = text.split(|c: char| !c.is_alphanumeric()).map(|word| match word {
-            // In capitals alone: "mr" and "us" are words.
+            // Only in capitals: "mr" and "us" are words.
             "CT" | "CBCT" | "MR" | "MRI" | "PET" | "SPECT" => Self::of_code(word),
             _ => Self::Unknown,
         });

@@ -1,4 +1,4 @@
-//! The brightest light of surroundings: the sun, a lamp, a window.
+//! Brightest light of an environment map: the sun, a lamp, a window.
 
 use std::f64::consts::PI;
 
@@ -8,18 +8,20 @@ use super::BrightLight;
 use super::panorama::Panorama;
 use crate::math::luminance;
 
-/// What belongs to a light is at least this share as bright as its brightest part: the sun's rim is half as bright as its
-/// middle, and glare around it a hundredth. Where so much of the surroundings is as bright that it is no light, only what is
-/// brighter can be one.
+/// Thresholds of a light's region, as shares of its peak brightness, tried in order. The sun's rim is half as bright
+/// as its centre, and glare around it a hundredth. If a region at one threshold is too large for a light, the next
+/// one is tried.
 const OF_PEAK: [f64; 3] = [1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0];
 
-/// What looks wider than this from the volume is no light but a sky: windows do so from a room's middle.
+/// Maximum angular diameter of a light, in degrees. A larger region is a sky: windows span this angle from a room's
+/// middle.
 const WIDEST_DEG: f64 = 70.0;
 
-/// A light that gives less than this share of all light does not stand out: it makes no shadow that one sees.
+/// Minimum share of the total light; a weaker light casts no visible shadow.
 const LEAST_SHARE: f64 = 0.08;
 
-/// Finds the light and takes it out: where it was is as bright as around it. `None` where none stands out.
+/// Finds the brightest light and removes it from the panorama: its region gets the mean radiance of its border.
+/// `None` if no light stands out.
 pub(super) fn take(panorama: &mut Panorama) -> Option<BrightLight> {
     let brightness: Vec<f64> = panorama.cells().map(|cell| luminance(cell.radiance)).collect();
     let (peak, &most) = brightness.iter().enumerate().max_by(|(_, a), (_, b)| a.total_cmp(b))?;
@@ -46,27 +48,27 @@ pub(super) fn take(panorama: &mut Panorama) -> Option<BrightLight> {
     Some(BrightLight {
         towards,
         color: flux.map(|c| c / largest),
-        // A white surface gives back irradiance over π.
+        // The radiance reflected by a white surface is irradiance over π.
         intensity: largest / PI,
         angle_deg: cap_deg(solid_angle),
     })
 }
 
-/// The width of the cap of a sphere that has a solid angle, 2π (1 − cos r), in degrees.
+/// Returns the angular diameter, in degrees, of the spherical cap with a solid angle of 2π (1 − cos r).
 fn cap_deg(solid_angle: f64) -> f64 {
     2.0 * (1.0 - solid_angle / (2.0 * PI)).clamp(-1.0, 1.0).acos().to_degrees()
 }
 
-/// Cells around one of them that are as bright as a threshold, and hang together.
+/// Connected component of cells that are at least as bright as a threshold.
 struct Patch {
     inside: Vec<usize>,
-    /// The mean radiance of those that border on it.
+    /// Mean radiance of the cells at the border.
     around: [f64; 3],
     solid_angle: f64,
 }
 
 impl Patch {
-    /// `None` where it is wider than any light, or all there is.
+    /// Flood fills from cell `first`; `None` if the component is wider than any light, or covers the whole panorama.
     fn around(panorama: &Panorama, brightness: &[f64], first: usize, threshold: f64) -> Option<Self> {
         let (mut inside, mut seen, mut waiting) = (Vec::new(), vec![false; brightness.len()], vec![first]);
         let (mut around, mut border, mut solid_angle) = ([0.0; 3], 0usize, 0.0);

@@ -1,55 +1,55 @@
-//! Why a picture cannot serve as surroundings.
+//! Errors of reading a panorama as an environment map.
 
 use std::path::PathBuf;
 
-/// What is wrong with a picture of surroundings.
+/// Reason for which a picture cannot serve as an environment map.
 #[derive(Debug, thiserror::Error)]
 pub enum SurroundingsError {
     /// The file cannot be read.
     #[error("{}: {source}", path.display())]
     Io {
-        /// Which.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Error of the operating system.
         source: std::io::Error,
     },
-    /// It cannot be decoded.
+    /// The picture cannot be decoded.
     #[error("{}: no picture that can be read: {why}; expected Radiance HDR, OpenEXR, PNG or JPEG", path.display())]
     Broken {
-        /// Which.
+        /// Path of the file.
         path: PathBuf,
-        /// What the decoder says.
+        /// Message of the decoder.
         why: String,
     },
-    /// It does not show all directions.
+    /// The picture does not show all directions: its width is not twice its height.
     #[error(
         "{}: {width} × {height} pixels; expected a picture of all directions, twice as wide as high (equirectangular, \
          as 360° panoramas are)", path.display()
     )]
     Shape {
-        /// Which.
+        /// Path of the file.
         path: PathBuf,
-        /// Pixels.
+        /// Width of the picture, in pixels.
         width: usize,
-        /// Pixels.
+        /// Height of the picture, in pixels.
         height: usize,
     },
-    /// It would take too much memory.
+    /// The picture would take too much memory.
     #[error("{}: {width} × {height} pixels are more than the {most} that are read; scale it down, which changes no light", path.display())]
     TooLarge {
-        /// Which.
+        /// Path of the file.
         path: PathBuf,
-        /// Pixels.
+        /// Width of the picture, in pixels.
         width: usize,
-        /// Pixels.
+        /// Height of the picture, in pixels.
         height: usize,
-        /// Pixels in all.
+        /// Maximum number of pixels in total.
         most: usize,
     },
-    /// There is no light in it.
+    /// The picture contains no light.
     #[error("{}: the picture is black, and lights nothing", path.display())]
     Black {
-        /// Which.
+        /// Path of the file.
         path: PathBuf,
     },
 }

@@ -1,5 +1,5 @@
-//! Surroundings in a picture: light from all directions as a camera saw it, in equirectangular projection. Kept of it are
-//! what lights need: the part that is linear in the direction, and the brightest light.
+//! Environment maps: light from all directions, from pictures in equirectangular projection. They are reduced to a
+//! linear function of the direction, which lights as a sky, and the brightest light.
 
 mod brightest;
 mod error;
@@ -14,38 +14,40 @@ use panorama::{Panorama, read};
 
 use crate::math::luminance;
 
-/// Light from all directions, in a space whose z axis points up and whose x axis to the middle of the picture.
+/// Environment light, in a space whose z axis points up and whose x axis points to the middle of the picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surroundings {
-    /// The name of the file.
+    /// File name of the picture.
     pub name: String,
-    /// Mean radiance of what is no light of its own, linear RGB, so scaled that its luminance is 1.
+    /// Mean radiance without the brightest light, linear RGB, scaled so that its luminance is 1.
     pub mean: [f64; 3],
-    /// For each colour towards where that is brighter, in the same scale: radiance is about `mean` + `slope` · ω.
+    /// Gradient of radiance for each colour channel, in the scale of `mean`: radiance is about `mean` + `slope` · ω.
     pub slope: [DVec3; 3],
-    /// What a white surface gives back of all of that and the light below, if it faces both, is 1: so much of it is `mean`.
+    /// Luminance of the mean radiance, normalised so that a white surface which faces both the brightest part of the
+    /// linear function and the light reflects a total luminance of 1.
     pub brightness: f64,
-    /// The light that stands out most.
+    /// Brightest light, if one stands out.
     pub light: Option<BrightLight>,
 }
 
-/// A light in surroundings.
+/// Light source extracted from an environment map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BrightLight {
-    /// Towards it; a unit vector.
+    /// Unit vector towards the light.
     pub towards: DVec3,
-    /// Linear RGB, its largest component 1.
+    /// Linear RGB colour, whose largest component is 1.
     pub color: [f64; 3],
-    /// What a white surface that faces it gives back of it.
+    /// Radiance that a white surface facing the light reflects of it, in the same normalisation as
+    /// [`Surroundings::brightness`].
     pub intensity: f64,
-    /// Of the disc that is as large, in degrees.
+    /// Angular diameter of a disc with the same solid angle, in degrees.
     pub angle_deg: f64,
 }
 
-/// Reads a picture of surroundings: Radiance HDR, EXR, PNG or JPEG, twice as wide as high.
+/// Reads an environment map: Radiance HDR, EXR, PNG or JPEG, twice as wide as high.
 ///
 /// # Errors
-/// When it cannot be read, is no such picture, is too large, or is black.
+/// Fails if the file cannot be read or decoded, has another aspect ratio, is too large, or is black.
 pub fn read_surroundings(path: &Path) -> Result<Surroundings, SurroundingsError> {
     let panorama = read(path)?;
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
@@ -53,12 +55,12 @@ pub fn read_surroundings(path: &Path) -> Result<Surroundings, SurroundingsError>
 }
 
 impl Surroundings {
-    /// Nothing, of a panorama that is black.
+    /// Reduces a panorama to environment light; `None` if it is black.
     fn of(name: String, mut panorama: Panorama) -> Option<Self> {
         let light = brightest::take(&mut panorama);
         let (mean, slope) = linear_part(&panorama);
         let light_luminance = light.map_or(0.0, |light| light.intensity * luminance(light.color));
-        // Of a surface that faces where radiance a + b·ω is largest: ∫ (a + b·ω) cos dω / π = a + ⅔ b.
+        // Reflection of a surface that faces the maximum of the radiance a + b·ω: ∫ (a + b·ω) cos dω / π = a + ⅔ b.
         let slope_of = |axis: usize| luminance(slope.map(|slope| slope[axis]));
         let steepest = DVec3::new(slope_of(0), slope_of(1), slope_of(2)).length();
         let all = luminance(mean) + 2.0 / 3.0 * steepest + light_luminance;
@@ -73,8 +75,8 @@ impl Surroundings {
     }
 }
 
-/// Mean radiance, and the slope of the function of the direction nearest to it of all linear ones: 3 ⟨L ω⟩, as far as no
-/// surface would receive less than nothing (a + ⅔ b·n ≥ 0).
+/// Returns the mean radiance and the slope of the linear function of the direction closest to it in the least-squares
+/// sense, 3 ⟨L ω⟩, limited so that irradiance is nowhere negative (a + ⅔ b·n ≥ 0).
 fn linear_part(panorama: &Panorama) -> ([f64; 3], [DVec3; 3]) {
     let (mut mean, mut slope) = ([0.0; 3], [DVec3::ZERO; 3]);
     for cell in panorama.cells() {
@@ -116,7 +118,7 @@ mod tests {
         let towards = DVec3::new(-0.48, 0.6, 0.64);
         for angle_deg in [2.0f64, 12.0, 40.0] {
             let edge = (0.5 * angle_deg).to_radians().cos();
-            // As much light as 1.5 times the sky's on a surface that faces it.
+            // The light gives 1.5 times as much as the sky to a surface that faces it.
             let solid = 2.0 * std::f64::consts::PI * (1.0 - edge);
             let radiance = 1.5 * std::f64::consts::PI / solid;
             let found = of(|at| {
@@ -131,9 +133,9 @@ mod tests {
             for (found, expected) in light.color.iter().zip([1.0, 0.8, 0.5]) {
                 assert!((found - expected).abs() < 0.02, "{angle_deg}: {light:?}");
             }
-            // What is left is the even sky.
+            // The remainder is the uniform sky.
             assert!(found.slope.iter().all(|slope| slope.length() < 0.03), "{angle_deg}: {found:?}");
-            // All of it together, where a surface faces it.
+            // Sum of both on a surface that faces the light.
             let all = found.brightness + light.intensity * luminance(light.color);
             assert!((all - 1.0).abs() < 0.03, "{angle_deg}: {all}");
         }

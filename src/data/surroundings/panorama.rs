@@ -1,4 +1,4 @@
-//! Radiance over all directions, in cells of latitude and longitude.
+//! Panorama: radiance over all directions, in cells of latitude and longitude, read from a picture.
 
 use std::f64::consts::PI;
 use std::fs::File;
@@ -12,73 +12,74 @@ use super::SurroundingsError;
 use crate::data::attempt::memory_budget_bytes;
 use crate::math::linear_from_srgb;
 
-/// Columns of cells at most: the sun covers one and a half.
+/// Maximum number of columns of cells: the sun covers one and a half.
 const MOST_COLUMNS: usize = 1024;
 
-/// Pixels that are read at most: 8192 × 4096, the largest panoramas that are common.
+/// Maximum number of pixels of a picture: 8192 × 4096, the largest panoramas in common use.
 const MOST_PIXELS: usize = 1 << 25;
 
-/// Radiance beyond this is an error in the picture: the sun is 2·10⁵ times as bright as the sky around it.
+/// Maximum plausible radiance; more is an error in the picture: the sun is 2·10⁵ times as bright as the sky around
+/// it.
 const MOST_RADIANCE: f32 = 1e7;
 
-/// How far the width may be from twice the height, as a share.
+/// Tolerance of the 2:1 aspect ratio, as a share of the width.
 const SHAPE_SLACK: f64 = 0.02;
 
-/// How EXR files begin.
+/// Magic bytes of EXR files.
 const EXR: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
-/// Radiance over all directions; z is up, and x towards the middle.
+/// Radiance over all directions; z is up, and x points to the middle of the picture.
 #[derive(Debug, Clone)]
 pub(super) struct Panorama {
-    /// Of the picture.
+    /// Width and height of the picture, in pixels.
     size: [usize; 2],
-    /// Columns and rows of cells.
+    /// Number of columns and rows of cells.
     cells: [usize; 2],
-    /// Sums of linear RGB, and how many.
+    /// Sum of the pixels' linear RGB in each cell, and their number.
     sums: Vec<[f64; 4]>,
 }
 
-/// A piece of the sphere.
+/// Cell of a panorama: a piece of the sphere.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cell {
-    /// Its middle.
+    /// Unit vector towards the centre of the cell.
     pub towards: DVec3,
     pub solid_angle: f64,
-    /// Linear RGB.
+    /// Mean radiance, linear RGB.
     pub radiance: [f64; 3],
 }
 
 impl Panorama {
-    /// One that is black, for a picture of so many pixels.
+    /// Creates a black panorama for a picture of the given size in pixels.
     fn new(size: [usize; 2]) -> Self {
         let columns = size[0].clamp(1, MOST_COLUMNS);
         let cells = [columns, size[1].clamp(1, MOST_COLUMNS / 2)];
         Self { size, cells, sums: vec![[0.0; 4]; cells[0] * cells[1]] }
     }
 
-    /// Adds a pixel.
+    /// Adds a pixel to its cell.
     fn add(&mut self, column: usize, row: usize, rgb: [f32; 3]) {
         let [columns, rows] = self.cells;
         let x = (column * columns / self.size[0]).min(columns - 1);
         let y = (row * rows / self.size[1]).min(rows - 1);
         let sum = &mut self.sums[x + columns * y];
         for (sum, value) in sum.iter_mut().zip(rgb) {
-            // What is no number, or less than black, is black.
+            // NaN and negative values count as black.
             *sum += f64::from(if value > 0.0 { value.min(MOST_RADIANCE) } else { 0.0 });
         }
         sum[3] += 1.0;
     }
 
-    /// All of them, row by row from above.
+    /// Iterates over all cells, row by row from the top.
     pub(super) fn cells(&self) -> impl Iterator<Item = Cell> + '_ {
         (0..self.sums.len()).map(|at| self.cell(at))
     }
 
-    /// One of them.
+    /// Returns the cell at an index.
     pub(super) fn cell(&self, at: usize) -> Cell {
         let [columns, rows] = self.cells;
         let (column, row) = (at % columns, at / columns);
-        // To the right of the middle is clockwise, seen from above.
+        // Moving right from the middle is clockwise, seen from above.
         let azimuth = 2.0 * PI * (0.5 - (column as f64 + 0.5) / columns as f64);
         let latitude = |row: f64| PI * (0.5 - row / rows as f64);
         let (above, middle, below) = (row as f64, row as f64 + 0.5, row as f64 + 1.0);
@@ -91,7 +92,7 @@ impl Panorama {
         }
     }
 
-    /// The cells beside one; the picture's left border is beside its right one.
+    /// Returns the indices of the neighbouring cells; columns wrap around from the left border to the right.
     pub(super) fn beside(&self, at: usize) -> impl Iterator<Item = usize> + use<> {
         let [columns, rows] = self.cells;
         let (column, row) = (at % columns, at / columns);
@@ -102,12 +103,12 @@ impl Panorama {
         sides.into_iter().chain(above).chain(below)
     }
 
-    /// Paints a cell over.
+    /// Overwrites the radiance of a cell.
     pub(super) fn set(&mut self, at: usize, [r, g, b]: [f64; 3]) {
         self.sums[at] = [r, g, b, 1.0];
     }
 
-    /// One in which each direction has the radiance that a function says.
+    /// Creates a panorama from a function of the direction.
     #[cfg(test)]
     pub(super) fn painted(size: [usize; 2], radiance: impl Fn(DVec3) -> [f64; 3]) -> Self {
         let mut panorama = Self::new(size);
@@ -119,7 +120,7 @@ impl Panorama {
     }
 }
 
-/// Reads a picture, told by its content.
+/// Reads a panorama; the format is detected by its content.
 pub(super) fn read(path: &Path) -> Result<Panorama, SurroundingsError> {
     let io = |source| SurroundingsError::Io { path: path.to_owned(), source };
     if !std::fs::metadata(path).map_err(io)?.is_file() {
@@ -130,7 +131,7 @@ pub(super) fn read(path: &Path) -> Result<Panorama, SurroundingsError> {
     if start == EXR { read_exr(path) } else { read_image(path) }
 }
 
-/// Refuses pictures of a wrong shape, and those that are too large.
+/// Rejects pictures of a wrong aspect ratio, and those that are too large.
 fn checked(path: &Path, [width, height]: [usize; 2]) -> Result<[usize; 2], SurroundingsError> {
     let path = path.to_owned();
     let is_wide = (width as f64 - 2.0 * height as f64).abs() <= SHAPE_SLACK * width as f64;
@@ -155,7 +156,7 @@ fn read_image(path: &Path) -> Result<Panorama, SurroundingsError> {
     let size = checked(path, [width as usize, height as usize])?;
     let picture = DynamicImage::from_decoder(decoder).map_err(broken)?;
     let mut panorama = Panorama::new(size);
-    // Pictures of bytes are for screens, those of floats are light.
+    // Integer pictures are encoded in sRGB, floating-point ones are linear.
     match picture {
         DynamicImage::ImageRgb32F(pixels) => {
             for (x, y, pixel) in pixels.enumerate_pixels() {
@@ -204,7 +205,7 @@ fn read_exr(path: &Path) -> Result<Panorama, SurroundingsError> {
 mod tests {
     use super::*;
 
-    /// A small panorama, brighter to the right.
+    /// Makes a small panorama that is brighter to the right.
     fn pixels() -> image::Rgb32FImage {
         image::Rgb32FImage::from_fn(16, 8, |x, _| image::Rgb([x as f32 / 15.0, 0.25, 0.5]))
     }
@@ -260,7 +261,7 @@ mod tests {
         assert!(says(&folder.path().join("none")).contains("none"));
     }
 
-    /// Damaged files are refused, or read as far as they make sense.
+    /// Tests that damaged files are rejected, or decoded partially, without a panic.
     #[test]
     fn damaged_pictures_end_nothing() {
         let folder = tempfile::tempdir().unwrap();
@@ -271,7 +272,7 @@ mod tests {
         exr::prelude::write_rgb_file(path("a.exr"), 16, 8, |x, y| (x as f32, y as f32, 0.5f32)).unwrap();
         let mut random = 1u64;
         let mut next = |below: usize| {
-            // Knuth's constants: any sequence will do that is the same each time.
+            // Knuth's MMIX constants of a linear congruential generator; any deterministic sequence will do.
             random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (random >> 33) as usize % below
         };
@@ -299,7 +300,7 @@ mod tests {
         let middle = panorama.cell(64 * 16 + 32).towards;
         assert!(middle.dot(DVec3::X) > 0.99, "{middle}");
         assert!(panorama.cell(0).towards.z > 0.99);
-        // To the right of the middle.
+        // A quarter turn to the right of the middle.
         assert!(panorama.cell(64 * 16 + 48).towards.dot(DVec3::NEG_Y) > 0.99);
         assert!(panorama.beside(64 * 3).any(|next| next == 64 * 3 + 63));
     }

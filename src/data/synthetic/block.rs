@@ -1,4 +1,4 @@
-//! The built-in `box`: a homogeneous cube with exact coverage, for comparisons with formulas.
+//! Built-in volume `box`: a homogeneous cube with exact coverage, for comparisons with formulas.
 
 use super::super::attempt::{Attempt, LoadControl, LoadError};
 use super::Grid;
@@ -6,9 +6,9 @@ use super::Grid;
 /// Half the edge of the cube, in units of p.
 const HALF: f64 = 0.5;
 
-/// 255 in |p|∞ ≤ ½, 0 outside, and on the faces the share of the voxel that is inside.
+/// Computes the voxels: 255 in |p|∞ ≤ ½, 0 outside, and on the faces scaled by the share of the voxel that is inside.
 ///
-/// With n divisible by four the faces lie between voxels and every value is 0 or 255.
+/// If n is divisible by four, the faces lie between voxels and every value is 0 or 255.
 pub(super) fn voxels(grid: Grid, attempt: Attempt<'_>, control: &LoadControl) -> Result<Vec<u8>, LoadError> {
     let coverage: Vec<f64> = (0..grid.n).map(|i| coverage(grid, i)).collect();
     grid.fill(attempt, control, |z, slice| {
@@ -20,9 +20,9 @@ pub(super) fn voxels(grid: Grid, attempt: Attempt<'_>, control: &LoadControl) ->
     })
 }
 
-/// The share of voxel `i` that is inside, along one axis.
+/// Returns the share of voxel `i` that is inside the cube, along one axis.
 fn coverage(grid: Grid, i: usize) -> f64 {
-    // Whole numbers where n is divisible by four: edges as indices, not as p.
+    // Computed in index units, in which the edges are integers if n is divisible by four.
     let (low, high) = ((0.5 - HALF / 2.0) * grid.n as f64, (0.5 + HALF / 2.0) * grid.n as f64);
     (high.min(i as f64 + 1.0) - low.max(i as f64)).clamp(0.0, 1.0)
 }
@@ -43,7 +43,7 @@ mod tests {
 
     #[test]
     fn cut_voxels_hold_their_share() {
-        // n = 10: faces at index 2.5 and 7.5.
+        // n = 10: the faces are at index 2.5 and 7.5.
         let volume = builtin("box", Some(10)).unwrap();
         assert_eq!(volume.value(2, 5, 5), 128.0);
         assert_eq!(volume.value(2, 2, 5), 64.0);

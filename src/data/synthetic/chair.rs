@@ -1,34 +1,34 @@
-//! A wooden chair on a floor plate: the scene for looking at shadows.
+//! Built-in volume `chair`: a wooden chair on a floor plate, a scene to demonstrate shadows.
 //!
-//! After the voxelised chair in figure 6 of M. Nulkar, K. Mueller, "Splatting with shadows", Volume
-//! Graphics 2001. The chair looks towards −y, is 1.35 high and stands on a plate of 1.84 x 1.84.
+//! After the voxelised chair in figure 6 of M. Nulkar, K. Mueller, "Splatting with shadows", Volume Graphics 2001.
+//! The chair faces −y, is 1.35 high and stands on a plate of 1.84 x 1.84.
 
 use glam::DVec3;
 
 use super::parts::Part;
 use super::shapes::Shape;
 
-/// Values, far enough apart for a transfer function to give each its own colour.
+/// Voxel values, far enough apart for a transfer function to give each its own colour.
 const WOOD: u8 = 200;
 const CUSHION: u8 = 150;
 const FLOOR: u8 = 90;
 
-/// Where the floor plate ends and the legs begin.
+/// Height of the floor plate's top, where the legs begin.
 const FLOOR_TOP: f64 = -0.74;
 
-/// Feet reach this far into the plate, so that no round end is seen.
+/// Depth by which the feet reach into the plate, to hide their round ends.
 const SUNK: f64 = 0.03;
 
-/// Where the back posts meet the seat.
+/// Lower end of the back posts, at the seat.
 const BACK_FOOT: DVec3 = DVec3::new(0.30, 0.27, -0.12);
 
-/// Where the back posts end; the top rail sits on them.
+/// Upper end of the back posts; the top rail sits on them.
 const BACK_TOP: DVec3 = DVec3::new(0.30, 0.41, 0.50);
 
-/// How far the back bows behind its posts in the middle.
+/// Backward bow of the back in its middle, relative to the posts.
 const BOW: f64 = 0.055;
 
-/// All parts of the scene.
+/// Returns all parts of the scene.
 pub(super) fn parts() -> Vec<Part> {
     let floor = Shape::upright_box([0.0, 0.0, FLOOR_TOP - 0.05], [0.92, 0.92, 0.05], 0.015);
     let cushion = Shape::upright_box([0.0, -0.02, -0.055], [0.30, 0.27, 0.04], 0.04);
@@ -38,7 +38,7 @@ pub(super) fn parts() -> Vec<Part> {
     parts
 }
 
-/// Seat, apron and legs.
+/// Returns the seat, the apron and the legs.
 fn frame() -> Vec<Shape> {
     let foot = FLOOR_TOP - SUNK;
     let mut shapes = vec![
@@ -60,7 +60,7 @@ fn frame() -> Vec<Shape> {
     shapes
 }
 
-/// One rod between the legs of each side, one between those two, one in front.
+/// Returns the rods between the legs: one on each side, one between these two, and one in front.
 fn stretchers() -> Vec<Shape> {
     vec![
         Shape::rod([-0.315, -0.295, -0.54], [-0.315, 0.315, -0.54], 0.025),
@@ -70,7 +70,7 @@ fn stretchers() -> Vec<Shape> {
     ]
 }
 
-/// Posts, slats, and the rails above and below the slats, all leaning backwards.
+/// Returns the posts, the slats, and the rails above and below the slats, all leaning backwards.
 fn back() -> Vec<Shape> {
     let lean = (BACK_TOP.y - BACK_FOOT.y) / (BACK_TOP.z - BACK_FOOT.z);
     let post_y = |z: f64| BACK_FOOT.y + lean * (z - BACK_FOOT.z);

@@ -1,8 +1,8 @@
 //! Built-in volumes: small scenes and test signals, computed at any resolution.
 //!
-//! All fill the same cube of 128 mm around the world's origin, whatever the number of voxels, so
-//! that settings made for one resolution hold for the others. They are described in coordinates
-//! p in [-1, 1]³ with z up: p = 1 is 64 mm, and voxel i of n has its centre at (i + ½) / n · 2 − 1.
+//! All fill the same cube of 128 mm around the world's origin, whatever the number of voxels, so that settings made
+//! for one resolution hold for the others. They are described in coordinates p in [-1, 1]³ with z up: p = 1 is 64 mm,
+//! and voxel i of n has its centre at (i + ½) / n · 2 − 1.
 
 mod block;
 mod chair;
@@ -21,40 +21,39 @@ use rayon::prelude::*;
 use super::attempt::{Attempt, Choice, Extent, LoadControl, LoadError, Room, memory_budget_bytes};
 use super::{Samples, Volume, VoxelType};
 
-/// The built-in volumes.
+/// Names of the built-in volumes.
 pub const NAMES: [&str; 5] = ["chair", "cloud", "sphere", "box", "marschner-lobb"];
 
-/// Voxels along each edge where nothing else is said.
+/// Default number of voxels along each edge.
 pub const DEFAULT_SIZE: usize = 128;
 
-/// Length to which the opacities of a built-in's transfer function refer: a voxel of the default
-/// size.
+/// Opacity unit of built-in volumes, in mm: a voxel of the default size.
 pub(super) const UNIT_MM: f64 = 1.0;
 
-/// Voxels along each edge that are possible.
+/// Allowed numbers of voxels along each edge.
 const SIZES: std::ops::RangeInclusive<usize> = 8..=1024;
 
-/// Length of the cube's edges.
+/// Edge of the cube, in mm.
 const EDGE_MM: f64 = 128.0;
 
-/// The voxels of a built-in volume along each of the three axes.
+/// Cubic grid of `n` voxels along each axis, in coordinates p.
 #[derive(Debug, Clone, Copy)]
 struct Grid {
     n: usize,
 }
 
 impl Grid {
-    /// The edge of a voxel, in units of p.
+    /// Returns the edge of a voxel, in units of p.
     fn voxel_edge(self) -> f64 {
         2.0 / self.n as f64
     }
 
-    /// The centre of voxel `i` along one axis, in units of p.
+    /// Returns the centre of voxel `i` along one axis, in units of p.
     fn centre(self, i: usize) -> f64 {
         (i as f64 + 0.5) / self.n as f64 * 2.0 - 1.0
     }
 
-    /// The voxels whose centres lie in `[from, to]` along one axis.
+    /// Returns the voxels whose centres lie in `[from, to]` along one axis.
     fn range(self, from: f64, to: f64) -> std::ops::Range<usize> {
         let index = |p: f64| (p * 0.5 + 0.5) * self.n as f64 - 0.5;
         let first = index(from).ceil().max(0.0) as usize;
@@ -62,7 +61,7 @@ impl Grid {
         first.min(end)..end
     }
 
-    /// Computes all voxels on all cores: `slice(z, values)` fills one z-slice, which begins as zeros.
+    /// Computes all voxels in parallel: `slice(z, values)` fills one z-slice, which begins as zeros.
     fn fill<T: Copy + Default + Send>(
         self,
         attempt: Attempt<'_>,
@@ -86,19 +85,20 @@ impl Grid {
     }
 }
 
-/// Makes the built-in volume `name` of `n`³ voxels, else [`DEFAULT_SIZE`]³.
+/// Makes the built-in volume `name` of `n`³ voxels, [`DEFAULT_SIZE`]³ by default.
 ///
 /// # Errors
-/// `BadInput` for a name that is not in [`NAMES`] or an `n` outside 8 … 1024; `Limit` when it would
-/// need more than three quarters of the free memory.
+/// `BadInput` for a name that is not in [`NAMES`] or an `n` outside 8 … 1024; `Limit` when it would need more than
+/// three quarters of the free memory.
 pub fn builtin(name: &str, n: Option<usize>) -> Result<Volume, LoadError> {
     builtin_within(name, n, memory_budget_bytes(), &Choice::default(), &LoadControl::new())
 }
 
-/// As [`builtin`], with a memory budget in bytes that also holds what is chosen of it, and with a control to watch and to cancel it.
+/// Makes a built-in volume as [`builtin`] does, with a memory budget in bytes that must also hold the chosen portion,
+/// and with a control for progress and cancellation.
 ///
 /// # Errors
-/// As [`builtin`]; also `Cancelled`.
+/// Fails like [`builtin`]; also with `Cancelled`.
 pub(crate) fn builtin_within(
     name: &str,
     n: Option<usize>,
@@ -126,7 +126,7 @@ pub(crate) fn builtin_within(
     }
     control.check()?;
     let voxel_type = if name == "marschner-lobb" { VoxelType::F32 } else { VoxelType::U8 };
-    // All of it is made, whatever is wanted of it.
+    // All voxels are made, even if only a portion of them is wanted.
     let room = Room { budget_bytes, choice, control };
     Extent::checked_whole(attempt, "N", [n as u64; 3], voxel_type, room)?;
     let grid = Grid { n };
@@ -143,7 +143,7 @@ pub(crate) fn builtin_within(
         translation: DVec3::splat((spacing_mm - EDGE_MM) / 2.0),
     };
     Volume::new(name, [n; 3], world_from_index, samples)
-        // One voxel of the default size: at any other size the look stays.
+        // The opacity unit is one voxel of the default size, so that the look is independent of the resolution.
         .map(|volume| volume.with_unit_mm(UNIT_MM))
         .map_err(|error| attempt.bad_input("data", error.to_string(), "choose another number of voxels"))
 }

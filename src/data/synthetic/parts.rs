@@ -1,8 +1,8 @@
-//! Scenes made of shapes, turned into voxels without jagged edges.
+//! Anti-aliased voxelisation of scenes made of shapes.
 //!
-//! A voxel gets `value · clamp(½ − d / w, 0, 1)`, with d the distance of its centre from the
-//! surface and w its edge: a ramp of one voxel, much like the share of the voxel that is inside.
-//! After M. Šrámek, A. Kaufman, "Alias-free voxelization of geometric objects", IEEE TVCG 5(3), 1999.
+//! A voxel gets `value · clamp(½ − d / w, 0, 1)`, with d the distance of its centre from the surface and w its edge:
+//! a ramp of one voxel, close to the share of the voxel that is inside. After M. Šrámek, A. Kaufman, "Alias-free
+//! voxelization of geometric objects", IEEE TVCG 5(3), 1999.
 
 use glam::DVec3;
 
@@ -10,14 +10,14 @@ use super::super::attempt::{Attempt, LoadControl, LoadError};
 use super::Grid;
 use super::shapes::Shape;
 
-/// A shape and the value of the voxels inside.
+/// Shape with the value of the voxels inside it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Part {
     pub(super) value: u8,
     pub(super) shape: Shape,
 }
 
-/// The voxels of a scene; where parts overlap the largest value counts.
+/// Computes the voxels of a scene; where parts overlap, the largest value wins.
 pub(super) fn voxelise(
     grid: Grid,
     parts: &[Part],
@@ -27,7 +27,7 @@ pub(super) fn voxelise(
     let edge = grid.voxel_edge();
     grid.fill(attempt, control, |z, slice| {
         for part in parts {
-            // Half a voxel outside the shape nothing is left of it: only its own box is visited.
+            // The ramp ends half a voxel outside the shape, so that only its bounding box is visited.
             let bounds = part.shape.bounds();
             let (min, max) = (bounds.min - edge / 2.0, bounds.max + edge / 2.0);
             if !grid.range(min.z, max.z).contains(&z) {

@@ -1,33 +1,33 @@
-//! Signed distances of simple shapes: negative inside.
+//! Signed distance functions of simple shapes: negative inside.
 //!
-//! After I. Quilez, "Distance functions", <https://iquilezles.org/articles/distfunctions/>. The
-//! tapered and the bowed shapes are a few percent off true distance, which a soft edge hides.
+//! After I. Quilez, "Distance functions", <https://iquilezles.org/articles/distfunctions/>. Those of the tapered and
+//! the bowed shapes deviate from the true distance by a few percent, which a soft edge hides.
 
 use glam::{DMat3, DVec3};
 
 use crate::math::Bounds;
 
-/// A shape in coordinates p.
+/// Geometric shape in coordinates p.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Shape {
     Sphere {
         centre: DVec3,
         radius: f64,
     },
-    /// A box whose edges are rounded by `radius`; the columns of `axes` are its own axes.
+    /// Box whose edges are rounded by `radius`; the columns of `axes` are its own axes.
     Box {
         centre: DVec3,
         axes: DMat3,
         half: DVec3,
         radius: f64,
     },
-    /// A rod with round ends and a radius at each.
+    /// Rod with round ends, tapered between a radius at each end.
     Rod {
         from: DVec3,
         to: DVec3,
         radii: [f64; 2],
     },
-    /// A rounded board along x that bows to +y and rises in its middle and leans to +y with z.
+    /// Rounded board along x that bows to +y and rises in its middle, and leans to +y with z.
     Board {
         centre: DVec3,
         half: DVec3,
@@ -39,17 +39,17 @@ pub(super) enum Shape {
 }
 
 impl Shape {
-    /// A rounded box along the axes.
+    /// Creates a rounded box aligned with the coordinate axes.
     pub(super) fn upright_box(centre: [f64; 3], half: [f64; 3], radius: f64) -> Self {
         Self::Box { centre: centre.into(), axes: DMat3::IDENTITY, half: half.into(), radius }
     }
 
-    /// A rod of the same radius everywhere.
+    /// Creates a rod of constant radius.
     pub(super) fn rod(from: [f64; 3], to: [f64; 3], radius: f64) -> Self {
         Self::Rod { from: from.into(), to: to.into(), radii: [radius; 2] }
     }
 
-    /// A flat bar between two points that do not differ in x alone: `half_width` is along x.
+    /// Creates a flat bar between two points that do not differ in x alone: `half_width` is along x.
     pub(super) fn bar(from: DVec3, to: DVec3, half_width: f64, half_thickness: f64, radius: f64) -> Self {
         let along = (to - from).normalize_or(DVec3::Z);
         let across = along.cross(DVec3::X).normalize_or(DVec3::Y);
@@ -58,7 +58,7 @@ impl Shape {
         Self::Box { centre: (from + to) / 2.0, axes, half, radius }
     }
 
-    /// The signed distance of `p`.
+    /// Returns the signed distance of `p` from the surface.
     pub(super) fn distance(&self, p: DVec3) -> f64 {
         match *self {
             Self::Sphere { centre, radius } => p.distance(centre) - radius,
@@ -81,7 +81,7 @@ impl Shape {
         }
     }
 
-    /// A box around the shape.
+    /// Returns a bounding box of the shape.
     pub(super) fn bounds(&self) -> Bounds {
         match *self {
             Self::Sphere { centre, radius } => Bounds { min: centre - radius, max: centre + radius },
@@ -102,7 +102,7 @@ impl Shape {
     }
 }
 
-/// The distance of `p` from a box around the origin; `half` includes the rounding.
+/// Returns the signed distance of `p` from a rounded box around the origin; `half` includes the rounding.
 fn rounded_box(p: DVec3, half: DVec3, radius: f64) -> f64 {
     let q = p.abs() - (half - radius);
     q.max(DVec3::ZERO).length() + q.max_element().min(0.0) - radius

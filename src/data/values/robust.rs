@@ -1,7 +1,8 @@
-//! The range of the values that matter, without padding and outliers: no single voxel can move it by much.
+//! Robust value range: without padding and outliers, so that no single voxel can change it by much.
 //!
-//! What decides are ranks among the values of at most [`MOST_SAMPLED`] voxels, so the order of the voxels, their number
-//! type, an offset and a scale play no role.
+//! It follows from the ranks of the values of at most [`MOST_SAMPLED`] voxels, so the order of voxels matters only
+//! for larger volumes, which are sampled. The range follows an offset or scale of the values, and depends on the
+//! number type only by rounding outwards to integers.
 
 use rayon::prelude::*;
 
@@ -9,69 +10,72 @@ use super::samples::with_samples;
 use crate::data::interrupt::Interrupt;
 use crate::data::{Samples, ValueRange, VoxelType};
 
-/// Voxels that are looked at: the 0.01 % at either end are 26 of them, whose rank is uncertain by a fifth.
+/// Maximum number of sampled voxels: the 0.01 % at either end are 26 of them, whose rank is uncertain by a fifth.
 const MOST_SAMPLED: usize = 1 << 18;
 
-/// Voxels that a task looks at.
+/// Number of voxels that one parallel task processes.
 const CHUNK: usize = 1 << 16;
 
-/// The most extreme voxels at either end that never decide: the ninth of a million normally distributed values is 0.3 %
-/// of their range below the eighth.
+/// Number of most extreme voxels at either end that are always ignored: the ninth of a million normally distributed
+/// values is 0.3 % of their range below the eighth.
 const FEW: usize = 8;
 
-/// Of less than this many voxels for each of [`FEW`], fewer are passed over: of very small volumes, none.
+/// Minimum number of voxels for each of [`FEW`]: in smaller volumes fewer are ignored, in very small ones none.
 const VOXELS_PER_FEW: usize = 1024;
 
-/// Most different values of a mask or of a handful of labels, whose values are names: none of them is an outlier.
+/// Maximum number of distinct values of a mask or a small label map, whose values are names: none of them is an
+/// outlier.
 const FEW_VALUES: usize = 16;
 
-/// Voxels of this many lie below the low end of what is usual, and as many above: 0.01 %.
+/// One voxel of this many lies below the lower end of the usual values, and one above the upper end: 0.01 %.
 const VOXELS_PER_UNUSUAL: usize = 10_000;
 
-/// A lowest or highest value that more than one of so many voxels have may be padding, …
+/// Criterion of padding: more than one voxel of this many has the lowest (or highest) value.
 const VOXELS_PER_PADDED: usize = 100;
 
-/// … if this share of the range of all but one of so many voxels lies between it and the others, …
+/// Criterion of padding: minimum gap between it and all other values, as a share of the range of all but one in
+/// `VOXELS_PER_RARE` voxels at either end.
 const LEAST_GAP: f64 = 0.05;
 const VOXELS_PER_RARE: usize = 1000;
 
-/// … of which there must be more than one of so many voxels, or they would be what lies between two values.
+/// Criterion of padding: more than one voxel of this many is no padding; fewer would merely lie between two values.
 const VOXELS_PER_REST: usize = 20;
 
-/// An end is moved out to the last value if that is less than this share of the range away.
+/// An end of the range is moved out to the extreme value if the distance is less than this share of the range.
 const WIDENED: f64 = 0.5;
 
-/// Between padding and the lowest or highest other value remains this share of the range: the padding may be what is
-/// around the object, whose border would be lost.
+/// Margin that remains between padding and the other values, as a share of the range: padding may be the background
+/// of the object, whose border would be lost otherwise.
 const BESIDE_PADDING: f64 = 1.0 / 16.0;
 
-/// Nearer than this share of the range to the file's last value, it is the end: less than 1 %, that one voxel may do.
+/// An end nearer than this share of the range to the extreme value is snapped to it: less than the 1 % by which a
+/// single voxel may move an end.
 const SNAP: f64 = 1.0 / 128.0;
 
-/// The values of a volume: all of them, and those that matter.
+/// Value ranges of a volume: of all values, and the robust one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ValueRanges {
-    /// From the smallest finite value of the file to the largest.
+    /// Range from the smallest finite value of the file to the largest.
     pub all: ValueRange,
-    /// Without padding and outliers.
+    /// Robust range, without padding and outliers.
     pub robust: ValueRange,
 }
 
 impl ValueRanges {
-    /// Both from 0 to 1.
+    /// Ranges that are both 0 … 1.
     pub const UNIT: Self = Self::same(ValueRange::UNIT);
 
-    /// All values matter.
+    /// Creates ranges of which the robust one includes all values.
     pub const fn same(all: ValueRange) -> Self {
         Self { all, robust: all }
     }
 
-    /// Finds the range that matters among values that span `all`.
+    /// Finds the robust range of values that span `all`.
     pub(in crate::data) fn of(samples: &Samples, all: ValueRange) -> Self {
         Self::without(samples, all, f64::NAN)
     }
 
-    /// Finds the range that matters among values that span `all` and are not `left_out`.
+    /// Finds the robust range of values that span `all`, ignoring voxels of the value `left_out`.
     pub(in crate::data) fn without(samples: &Samples, all: ValueRange, left_out: f64) -> Self {
         let Some(found) = ValueRange::spread(all.low, all.high).and_then(|_| robust(samples, left_out))
         else {
@@ -92,20 +96,20 @@ impl ValueRanges {
     }
 }
 
-/// The value below which a share of the finite ones lies that are not `left_out`, as far as evenly spread voxels tell; 0
-/// where there are none.
+/// Returns the quantile at `share` (0 … 1) of the finite values other than `left_out`, estimated from evenly spread
+/// voxels; 0 if there are none.
 pub(in crate::data) fn quantile(samples: &Samples, left_out: f64, share: f64) -> f64 {
     let values = sorted(samples, left_out);
     let at = (share.clamp(0.0, 1.0) * values.len() as f64) as usize;
     values.get(at).or(values.last()).copied().unwrap_or_default()
 }
 
-/// The finite values of evenly spread voxels that are not `left_out`, in order.
+/// Returns the finite values of evenly spread voxels other than `left_out`, sorted.
 fn sorted(samples: &Samples, left_out: f64) -> Vec<f64> {
     let stride = samples.len().div_ceil(MOST_SAMPLED).max(1);
     let value = |at: usize| {
         let first = at * stride;
-        // Somewhere in each stretch, lest strides fall into step with rows.
+        // A pseudo-random voxel of each stride, so that the sampling cannot alias with the rows of the volume.
         let hash = ((at as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 33) as usize;
         samples.value(first + hash % stride.min(samples.len() - first))
     };
@@ -115,14 +119,14 @@ fn sorted(samples: &Samples, left_out: f64) -> Vec<f64> {
     values
 }
 
-/// The lowest and the highest values, in order from the outermost on.
+/// Lowest and highest values seen, sorted from the outermost inwards.
 struct Extremes {
     lows: Vec<f64>,
     highs: Vec<f64>,
 }
 
 impl Extremes {
-    /// Room for so many at either end.
+    /// Creates `count` placeholders at either end.
     fn none(count: usize) -> Self {
         Self { lows: vec![f64::INFINITY; count], highs: vec![f64::NEG_INFINITY; count] }
     }
@@ -154,7 +158,8 @@ impl Extremes {
     }
 }
 
-/// The range of the finite values between two others that are not `left_out` but for `few` voxels at either end; `None` if it has no length.
+/// Returns the range of the finite values strictly between `above` and `below` and other than `left_out`, without the
+/// `few` most extreme voxels at either end; `None` if it has no length.
 #[expect(trivial_numeric_casts, clippy::unnecessary_cast, reason = "one of the eight types is f64 already")]
 fn trimmed(samples: &Samples, left_out: f64, few: usize, above: f64, below: f64) -> Option<ValueRange> {
     let interrupt = Interrupt::here();
@@ -174,12 +179,12 @@ fn trimmed(samples: &Samples, left_out: f64, few: usize, above: f64, below: f64)
     range.span().is_finite().then_some(range)
 }
 
-/// Whether there are no more than so many different values among some in order.
+/// Returns true if sorted values have at most [`FEW_VALUES`] distinct ones.
 fn are_few(values: &[f64]) -> bool {
     values.windows(2).filter(|pair| pair[0] < pair[1]).take(FEW_VALUES).count() < FEW_VALUES
 }
 
-/// How many of some values in order, from the first on, are one that is padding beside the others; 0 if it is not.
+/// Returns the number of leading values, of a sequence sorted from one end, that are padding; 0 if there is none.
 fn padded(values: &[f64]) -> usize {
     let (n, rare) = (values.len(), values.len() / VOXELS_PER_RARE);
     let usual = (values[n - 1 - rare] - values[rare]).abs();
@@ -192,7 +197,8 @@ fn padded(values: &[f64]) -> usize {
     if gap >= LEAST_GAP * usual { count } else { 0 }
 }
 
-/// How far an end is moved outwards from where `usual` ends: distances to the last value, and to padding beyond that.
+/// Returns the distance by which an end of the `usual` range is moved outwards, given the distances from there to the
+/// extreme value and to padding beyond it.
 fn widened(usual: ValueRange, to_last: f64, padding: Option<f64>) -> f64 {
     let most = WIDENED * usual.span();
     let by = if to_last < most { to_last } else { 0.0 };
@@ -203,7 +209,7 @@ fn widened(usual: ValueRange, to_last: f64, padding: Option<f64>) -> f64 {
     }
 }
 
-/// The range of the values that matter; `None` where there is only one value but for a few voxels.
+/// Computes the robust range; `None` if, apart from a few voxels, there is only one value.
 fn robust(samples: &Samples, left_out: f64) -> Option<ValueRange> {
     let few = (samples.len() / VOXELS_PER_FEW).min(FEW);
     let whole = trimmed(samples, left_out, few, f64::NEG_INFINITY, f64::INFINITY)?;
@@ -248,7 +254,7 @@ mod tests {
         ValueRanges::of(&Samples::F64(values), all).robust
     }
 
-    /// Numbers between 0 and 1, mostly near 0, from a fixed seed.
+    /// Makes pseudo-random numbers between 0 and 1, mostly near 0, from a fixed seed.
     fn numbers(count: usize) -> Vec<f64> {
         let mut state = 7u64;
         let mut next = || {
@@ -294,7 +300,7 @@ mod tests {
                 "{padding}: {after:?}, {before:?}"
             );
         }
-        // Hot voxels, but less than one of ten thousand.
+        // Hot voxels, fewer than one in ten thousand.
         let mut hot = numbers(200_000);
         let before = of(hot.clone());
         hot[1000..1015].fill(500.0);
@@ -304,11 +310,11 @@ mod tests {
 
     #[test]
     fn what_lies_around_an_object_is_no_padding_if_it_is_near_its_values() {
-        // A tissue of 0.3 … 1 in exact nothing.
+        // Tissue of 0.3 … 1 in a background of exactly 0.
         let mut values: Vec<f64> = numbers(20_000).into_iter().map(|value| 0.3 + 0.7 * value).collect();
         values.extend(vec![0.0; 20_000]);
         assert_eq!(of(values).low, 0.0);
-        // Of steel of 0.95 … 1 it is far from them: the object's border keeps a place in the range.
+        // The background is far from steel of 0.95 … 1: only a margin for the object's border stays in the range.
         let mut values: Vec<f64> = numbers(20_000).into_iter().map(|value| 0.95 + 0.05 * value).collect();
         values.extend(vec![0.0; 20_000]);
         let found = of(values);
@@ -326,10 +332,10 @@ mod tests {
         all((0..50_000).map(|at| f64::from(u8::from(at < 30))).collect());
         all((0..50_000).map(|at| f64::from(at % 50 / 46)).collect());
         all((0..50_000).map(|at| f64::from(at % 7) * 300.0).collect());
-        // One voxel only: there is nothing else to be seen.
+        // A single voxel: there is nothing else to show.
         all((0..5000).map(|at| f64::from(u8::from(at == 9))).collect());
         all(vec![1.0, 2.0]);
-        // A mask with one voxel that is not of it.
+        // A mask with a single outlier.
         let mut mask: Vec<f64> = (0..50_000).map(|at| f64::from(at % 2)).collect();
         mask[100] = 1e30;
         assert_eq!(of(mask), ValueRange::UNIT);

@@ -1,4 +1,4 @@
-//! A scalar volume on a regular grid, with its place in the world and its values in data units.
+//! Scalar volume on a regular grid, with its transform to world space and its values in data units.
 
 mod corrections;
 mod error;
@@ -34,25 +34,25 @@ use super::values::robust::quantile;
 use super::{Hints, Samples, ValueRange, ValueRanges};
 use crate::math::SceneSpace;
 
-/// Identifies a volume, and says what its values are.
+/// Identity of a volume together with its value ranges.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VolumeId {
-    /// See [`Volume::content_id`].
+    /// Content hash, see [`Volume::content_id`].
     pub content_id: u64,
-    /// See [`Volume::ranges`].
+    /// Value ranges, see [`Volume::ranges`].
     pub ranges: ValueRanges,
-    /// See [`Volume::dims`].
+    /// Dimensions in voxels, see [`Volume::dims`].
     pub dims: [usize; 3],
 }
 
-/// A scalar volume. Its invariants: at least one voxel, an invertible affine, a finite value range. Copies share the
-/// voxels.
+/// Scalar volume. Invariants: at least one voxel, an invertible affine transform, a finite value range. Clones share
+/// the voxels.
 #[derive(Debug, Clone)]
 pub struct Volume {
     name: String,
     dims: [usize; 3],
     file_dims: [usize; 3],
-    /// How voxels lie among those of the file.
+    /// Position of the voxels in the grid of the file.
     block: InFile,
     world_from_index: DAffine3,
     samples: Arc<Samples>,
@@ -68,21 +68,21 @@ pub struct Volume {
     remarks: Vec<String>,
     held: Arc<Held>,
     looking_took: Duration,
-    /// Found when it is first asked for.
+    /// Kind of data, detected on first use.
     kind: OnceLock<KindFound>,
-    /// Found when they are first asked for.
+    /// Labels of the volume, counted on first use.
     labels: OnceLock<Option<Arc<LabelSet>>>,
     content_id: u64,
-    /// What it was made from, if somebody knows better than the file.
+    /// Corrections by the user and the opened volume, if there are any.
     corrected: Option<Arc<Corrected>>,
 }
 
 impl Volume {
-    /// Makes a volume. `world_from_index` maps voxel indices (centres at integers) to millimetres.
+    /// Creates a volume. `world_from_index` maps voxel indices (centres at integers) to millimetres.
     ///
     /// # Errors
-    /// When the count does not fit `dims`, a dimension is zero, the affine is not finite and
-    /// invertible, no value is finite, or the values span more than a number can say.
+    /// Fails if the count does not match `dims`, a dimension is zero, the transform is not finite and invertible, no
+    /// value is finite, or the span of the values exceeds the range of numbers.
     pub fn new(
         name: impl Into<String>,
         dims: [usize; 3],
@@ -92,7 +92,7 @@ impl Volume {
         Self::sharing(name.into(), dims, world_from_index, Arc::new(samples))
     }
 
-    /// As [`Self::new`], of voxels that others may have, too.
+    /// Creates a volume as [`Self::new`] does, from voxels that other volumes may share.
     fn sharing(
         name: String,
         dims: [usize; 3],
@@ -108,7 +108,7 @@ impl Volume {
         }
         let matrix = world_from_index.matrix3;
         let lengths = DVec3::new(matrix.x_axis.length(), matrix.y_axis.length(), matrix.z_axis.length());
-        // Relative to a box of the same edges: below a millionth it is flat, whatever the unit.
+        // Relative to a box with the same edges: below a millionth it is flat, whatever the unit.
         let flatness = matrix.determinant().abs() / lengths.element_product();
         if !(world_from_index.is_finite() && lengths.min_element() > 0.0 && flatness > 1e-6) {
             return Err(VolumeError::BadGeometry { what: format!("axes {matrix:?}") });
@@ -151,96 +151,97 @@ impl Volume {
         Ok(if non_finite_voxels > 0 { volume.with_missing() } else { volume })
     }
 
-    /// States the length to which opacities of this material refer, so that it looks the same at
-    /// every resolution; the built-in volumes have one.
+    /// Sets the opacity unit in mm, so that the material looks the same at every resolution; built-in volumes have
+    /// one.
     #[must_use]
     pub fn with_unit_mm(self, unit_mm: f64) -> Self {
         Self { unit_mm: Some(unit_mm), ..self }
     }
 
-    /// See [`Self::with_unit_mm`].
+    /// Returns the opacity unit in mm, see [`Self::with_unit_mm`].
     pub fn unit_mm(&self) -> Option<f64> {
         self.unit_mm
     }
 
-    /// States that world space is right-anterior-superior, as the file says of a body.
+    /// Sets whether world space is right-anterior-superior, as the file states of a body.
     #[must_use]
     pub(crate) fn with_anatomy(self, is_anatomical: bool) -> Self {
         Self { is_anatomical, ..self }
     }
 
-    /// Whether +x, +y and +z are known to be a body's right, front and head.
+    /// Returns true if +x, +y and +z are known to be a body's right, anterior and superior directions.
     pub fn is_anatomical(&self) -> bool {
         self.is_anatomical
     }
 
-    /// States what the file says of the values.
+    /// Sets the metadata of the values.
     #[must_use]
     pub fn with_hints(self, hints: Hints) -> Self {
         Self { hints, kind: OnceLock::new(), ..self }
     }
 
-    /// What the file says of the values.
+    /// Returns the metadata of the values, as the file states it.
     pub fn hints(&self) -> &Hints {
         &self.hints
     }
 
-    /// States that nobody knows how large voxels are: lengths are in voxels then, not in millimetres.
+    /// Marks the size of voxels as unknown: lengths are then in voxels, not in millimetres.
     #[must_use]
     pub fn with_unknown_scale(self) -> Self {
         Self { length_unit: SpacingUnit::Voxels, ..self }
     }
 
-    /// Whether lengths are in voxels because nobody knows how large these are.
+    /// Returns true if lengths are in voxels because the voxels' size is unknown.
     pub fn has_unknown_scale(&self) -> bool {
         self.length_unit == SpacingUnit::Voxels
     }
 
-    /// States what a user should know of how the file was read.
+    /// Sets remarks for the user about how the file was read.
     #[must_use]
     pub fn with_remarks(self, remarks: Vec<String>) -> Self {
         Self { remarks, ..self }
     }
 
-    /// What a user should know of how the file was read: what it says that cannot be, and what was taken instead.
+    /// Returns remarks for the user about how the file was read: impossible statements in it, and the values used
+    /// instead.
     pub fn remarks(&self) -> &[String] {
         &self.remarks
     }
 
-    /// States what else the file holds.
+    /// Sets the inventory of the file.
     #[must_use]
     pub(super) fn with_held(self, held: Held) -> Self {
         Self { held: Arc::new(held), ..self }
     }
 
-    /// What the file holds of which this volume is one: what else could be opened of it.
+    /// Returns the inventory of the file: the other volumes that could be opened of it.
     pub fn held(&self) -> &Held {
         &self.held
     }
 
-    /// States how long it took to look at the voxels of a file once they were there.
+    /// Sets the time taken to analyse the voxels after reading.
     #[must_use]
     pub(super) fn with_looking_took(self, looking_took: Duration) -> Self {
         Self { looking_took, ..self }
     }
 
-    /// How long it took, when its file was read, to find what its values span and what identifies them: what of loading was
-    /// neither reading nor decoding. Nothing for volumes that come from no file.
+    /// Returns the time taken, when the file was read, for the voxels' ranges and hash: the part of loading that was
+    /// neither reading nor decoding. Zero for volumes that come from no file.
     pub fn looking_took(&self) -> Duration {
         self.looking_took
     }
 
-    /// What kind of data it holds. The first to ask waits until that is found.
+    /// Returns the kind of data; the first call detects it and blocks meanwhile.
     pub fn kind(&self) -> &KindFound {
         self.kind.get_or_init(|| KindFound::of(self))
     }
 
-    /// Whether its values are labels, whose numbers have no mean.
+    /// Returns true if values are labels, whose numbers have no mean.
     pub(in crate::data) fn is_of_labels(&self) -> bool {
         matches!(self.kind().kind, DataKind::LabelMap { .. })
     }
 
-    /// States what else is known of the volume whose blocks this one's voxels are.
+    /// Copies the metadata of the volume whose blocks this one's voxels represent.
     #[must_use]
     pub(super) fn standing_for(self, whole: &Self) -> Self {
         Self {
@@ -256,10 +257,10 @@ impl Volume {
         }
     }
 
-    /// An axis-aligned volume: `spacing_mm` between voxel centres along x, y, z.
+    /// Creates an axis-aligned volume with `spacing_mm` between voxel centres along x, y, z.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// Fails like [`Self::new`].
     pub fn with_spacing(
         name: impl Into<String>,
         dims: [usize; 3],
@@ -270,84 +271,84 @@ impl Volume {
         Self::new(name, dims, affine, samples)
     }
 
-    /// What the user calls it: the file's name or the built-in's.
+    /// Returns the name shown to the user: that of the file or the built-in volume.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Voxels along x, y, z.
+    /// Returns the number of voxels along x, y, z.
     pub fn dims(&self) -> [usize; 3] {
         self.dims
     }
 
-    /// Voxels along x, y, z of the volume whose blocks were averaged ([`Self::reduced`]), or of which every so manyth was
-    /// kept ([`Self::thinned`]); [`Self::dims`] where that is all of them.
+    /// Returns the dimensions of the volume from which this one was made by block averages ([`Self::reduced`]) or
+    /// subsampling ([`Self::thinned`]); [`Self::dims`] if it is neither.
     pub fn file_dims(&self) -> [usize; 3] {
         self.file_dims
     }
 
-    /// Number of voxels.
+    /// Returns the total number of voxels.
     pub fn voxel_count(&self) -> usize {
         self.samples.len()
     }
 
-    /// Voxel indices (centres at integers) to millimetres.
+    /// Returns the transform from voxel indices (centres at integers) to millimetres.
     pub fn world_from_index(&self) -> DAffine3 {
         self.world_from_index
     }
 
-    /// Distance between voxel centres along the three index axes.
+    /// Returns the distance in mm between voxel centres along the three index axes.
     pub fn spacing_mm(&self) -> DVec3 {
         let axes = self.world_from_index.matrix3;
         DVec3::new(axes.x_axis.length(), axes.y_axis.length(), axes.z_axis.length())
     }
 
-    /// How the grid lies in scene space.
+    /// Returns the scene space of the grid.
     pub fn scene(&self) -> SceneSpace {
         SceneSpace::new(self.dims, self.world_from_index)
     }
 
-    /// The stored values.
+    /// Returns the stored values.
     pub fn samples(&self) -> &Samples {
         &self.samples
     }
 
-    /// The smallest and the largest finite value of the file, in data units.
+    /// Returns the range of finite values in the file, in data units.
     pub fn value_range(&self) -> ValueRange {
         self.ranges.all
     }
 
-    /// All values of the file, and those that matter.
+    /// Returns the range of all values and the robust range.
     pub fn ranges(&self) -> ValueRanges {
         self.ranges
     }
 
-    /// The value below which about that share of the voxels lies.
+    /// Returns the value below which about this share of the voxels lies.
     pub fn quantile(&self, share: f64) -> f64 {
         quantile(&self.samples, self.padding_value.unwrap_or(f64::NAN), share)
     }
 
-    /// How many voxels hold NaN or an infinity: nothing is there.
+    /// Returns the number of voxels that hold NaN or an infinity, and so are missing.
     pub fn non_finite_voxels(&self) -> usize {
         self.non_finite_voxels
     }
 
-    /// Identifies values and geometry: equal volumes have equal ids.
+    /// Returns a hash of values and geometry: equal volumes have equal ids.
     pub fn content_id(&self) -> u64 {
         self.content_id
     }
 
-    /// What pictures are asked for by.
+    /// Returns the identity by which pictures of the volume are cached.
     pub fn id(&self) -> VolumeId {
         VolumeId { content_id: self.content_id, ranges: self.ranges, dims: self.dims }
     }
 
-    /// One voxel in data units, as the file has it.
+    /// Returns the value of one voxel in data units, as stored in the file.
     pub fn value(&self, x: usize, y: usize, z: usize) -> f64 {
         self.samples.value(x + self.dims[0] * (y + self.dims[1] * z))
     }
 
-    /// The density of a voxel; `None` where it holds nothing.
+    /// Returns the density of a voxel; `None` if it is missing.
     pub fn density_at(&self, [x, y, z]: [usize; 3]) -> Option<f64> {
         let voxel = x + self.dims[0] * (y + self.dims[1] * z);
         let is_missing = self.missing().is_some_and(|missing| missing.contains(voxel));
@@ -365,7 +366,7 @@ mod tests {
         let volume = Volume::with_spacing("t", [4, 1, 1], DVec3::ONE, samples).unwrap();
         assert_eq!(volume.value_range(), ValueRange::new(-1000.0, 1000.0));
         assert_eq!(volume.non_finite_voxels(), 1);
-        // What is not there has the mean of what is beside it.
+        // The missing voxel gets the mean of its neighbours.
         assert_eq!(volume.slice_densities(0), [0.0, 0.0, 0.5, 1.0]);
         assert!(volume.missing().is_some_and(|missing| missing.count() == 1 && missing.contains(0)));
         assert_eq!(volume.value_of(0.5), 0.0);

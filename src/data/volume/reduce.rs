@@ -1,4 +1,4 @@
-//! Volumes with fewer voxels, for adapters that cannot hold them all.
+//! Downsampling of volumes by block averages, for adapters that cannot hold all voxels.
 
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
@@ -7,29 +7,29 @@ use super::{Samples, Volume, VolumeError};
 use crate::data::interrupt::{Interrupt, PIECE};
 
 impl Volume {
-    /// The volume with blocks of so many voxels along x, y and z averaged into one each: same place in the world,
-    /// same number type (means are rounded), at least one voxel along each axis. The last block of an axis may
-    /// have fewer voxels; values that are not finite, and padding, are left out of means. Of label maps, whose numbers
-    /// have no mean, a block has the label that most of its voxels have.
+    /// Averages blocks of the given numbers of voxels along x, y and z to one voxel each: same position in world
+    /// space, same number type (means are rounded), at least one voxel along each axis. The last block of an axis may
+    /// have fewer voxels; non-finite values and padding are excluded from means. Label maps, whose numbers have no
+    /// mean, get the most frequent label of each block.
     ///
     /// # Errors
-    /// As [`Volume::new`].
+    /// Fails like [`Volume::new`].
     pub fn reduced(self, block: [usize; 3]) -> Result<Self, VolumeError> {
         let dims = self.dims();
         let block = [0, 1, 2].map(|axis| block[axis].clamp(1, dims[axis]));
         if block == [1; 3] { Ok(self) } else { self.averaged(block) }
     }
 
-    /// As [`Self::reduced`], beside the volume itself, which is still needed.
+    /// Does the averaging of [`Self::reduced`] without consuming the volume.
     ///
     /// # Errors
-    /// As [`Volume::new`].
+    /// Fails like [`Volume::new`].
     pub fn averaged(&self, block: [usize; 3]) -> Result<Self, VolumeError> {
         let dims = self.dims();
         let block = [0, 1, 2].map(|axis| block[axis].clamp(1, dims[axis]));
         let padding = self.padding_value();
         let samples = Blocks { dims, block, padding }.averaged(self.samples(), self.is_of_labels());
-        // A block's centre is that of its voxels: voxel 0 of two voxels lies at index 0.5.
+        // The centre of a block is that of its voxels: for two voxels, index 0.5.
         let edges = DVec3::from(block.map(|n| n as f64));
         let index_from_block =
             DAffine3 { matrix3: DMat3::from_diagonal(edges), translation: 0.5 * (edges - 1.0) };
@@ -44,24 +44,24 @@ impl Volume {
     }
 }
 
-/// Blocks along each axis.
+/// Returns the number of blocks along each axis.
 pub fn reduced_dims(dims: [usize; 3], block: [usize; 3]) -> [usize; 3] {
     [0, 1, 2].map(|axis| dims[axis].div_ceil(block[axis]))
 }
 
-/// Blocks of voxels to be averaged.
+/// Partition of a grid into blocks of voxels to be averaged.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::data) struct Blocks {
-    /// Voxels along x, y, z.
+    /// Voxels of the grid along x, y, z.
     pub(in crate::data) dims: [usize; 3],
     /// Voxels of a block along x, y, z, none of them 0.
     pub(in crate::data) block: [usize; 3],
-    /// The value that is left out of means.
+    /// Padding value that is excluded from means.
     pub(in crate::data) padding: Option<f64>,
 }
 
 impl Blocks {
-    /// For every block the mean of its voxels, of the same number type; of labels the most frequent.
+    /// Returns the mean of each block in the same number type; for labels the most frequent one.
     pub(in crate::data) fn averaged(&self, samples: &Samples, are_labels: bool) -> Samples {
         match samples {
             samples if are_labels => self.most_frequent(samples),
@@ -76,7 +76,7 @@ impl Blocks {
         }
     }
 
-    /// Of every block the first voxel.
+    /// Returns the first voxel of each block.
     pub(in crate::data) fn firsts(&self, samples: &Samples) -> Samples {
         let [nx, ny, nz] = self.dims;
         let [sx, sy, sz] = self.block;
@@ -85,8 +85,8 @@ impl Blocks {
         samples.picked(&firsts)
     }
 
-    /// The rounded mean of every block. One that happens to be the padding value becomes the next number: something is
-    /// there.
+    /// Returns the rounded mean of each block. A mean that equals the padding value by chance is moved to the next
+    /// integer, so that the block does not become missing.
     fn whole_means<T: Copy + Into<f64> + Sync, R: Send>(
         &self,
         values: &[T],
@@ -99,28 +99,28 @@ impl Blocks {
         })
     }
 
-    /// The value that most voxels of every block have, the lowest of those that are equally frequent; where nothing is
-    /// finite the padding value, or NaN where there is none.
+    /// Returns the most frequent value of each block, the lowest of equally frequent ones; blocks without finite
+    /// values get the padding value, or NaN.
     fn most_frequent(&self, samples: &Samples) -> Samples {
         let chosen = self.chosen(|voxel| samples.value(voxel));
         samples.picked(&chosen)
     }
 
-    /// For every block a voxel with its most frequent value.
+    /// Returns for each block the index of a voxel with its most frequent value.
     fn chosen(&self, value: impl Fn(usize) -> f64 + Sync) -> Vec<usize> {
         let &Self { dims, block, padding } = self;
         let [nx, ny, _] = dims;
         let [width, height, depth] = reduced_dims(dims, block);
         let interrupt = Interrupt::here();
         let choose = |at: usize| {
-            // Where nobody wants it any voxel will do.
+            // After cancellation any voxel will do, as the result is discarded.
             if at.is_multiple_of(PIECE) && interrupt.is_due() {
                 return 0;
             }
             let low = [at % width, at / width % height, at / (width * height)];
             let [xs, ys, zs] = [0, 1, 2]
                 .map(|axis| low[axis] * block[axis]..((low[axis] + 1) * block[axis]).min(dims[axis]));
-            // A block has a few different labels at most.
+            // A list is searched, as a block has only a few different labels.
             let mut counted: Vec<(f64, usize, usize)> = Vec::new();
             for z in zs.clone() {
                 for y in ys.clone() {
@@ -144,7 +144,7 @@ impl Blocks {
         (0..width * height * depth).into_par_iter().map(choose).collect()
     }
 
-    /// The mean of every block, rounded; of nothing finite the padding value, or NaN where there is none.
+    /// Returns the mean of each block after `round`; blocks without finite values get the padding value, or NaN.
     fn means<T: Copy + Into<f64> + Sync, R: Send>(
         &self,
         values: &[T],
@@ -198,7 +198,7 @@ mod tests {
         assert_eq!(half.spacing_mm(), DVec3::new(2.0, 4.0, 6.0));
         let corner = half.world_from_index().transform_point3(DVec3::ZERO);
         assert_eq!(corner, volume.world_from_index().transform_point3(DVec3::splat(0.5)));
-        // Again, and along one axis alone.
+        // A second reduction along one axis only.
         let quarter = half.reduced([2, 1, 1]).unwrap();
         assert_eq!((quarter.dims(), quarter.file_dims()), ([1, 2, 1], [4, 3, 2]));
         assert_eq!(volume.clone().reduced([1; 3]).unwrap().content_id(), volume.content_id());

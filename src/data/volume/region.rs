@@ -1,4 +1,4 @@
-//! A box of a volume's voxels as a volume.
+//! Cropping of a volume to a region of its voxels.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -9,11 +9,11 @@ use super::{Samples, Volume, VolumeError};
 use crate::data::values::samples::with_samples;
 
 impl Volume {
-    /// The voxels of a box alone, from the first to before the last along x, y and z, where they were in the world. Where
-    /// nobody else holds the volume's voxels this takes no memory beside them.
+    /// Crops the volume to a region, given as half-open ranges along x, y and z; voxels keep their positions in world
+    /// space. Takes no extra memory unless the voxels are shared.
     ///
     /// # Errors
-    /// When the box is empty or reaches beyond the grid, or none of its voxels is finite.
+    /// Fails if the region is empty or reaches beyond the grid, or none of its voxels is finite.
     pub fn cropped(self, region: &[Range<usize>; 3]) -> Result<Self, VolumeError> {
         let dims = self.dims();
         if region.iter().zip(dims).any(|(range, count)| range.is_empty() || range.end > count) {
@@ -27,7 +27,7 @@ impl Volume {
         let mut samples = Arc::unwrap_or_clone(shared);
         keep_box(&mut samples, dims, region);
         let cropped = Self::new(whole.name(), found, world_from_index, samples)?;
-        // A box of padding alone is shown as it is.
+        // A region that consists only of padding is shown as it is.
         let cropped = match whole.padding_value() {
             Some(padding) => cropped.clone().with_padding(padding).unwrap_or(cropped),
             None => cropped,
@@ -36,10 +36,10 @@ impl Volume {
     }
 }
 
-/// Moves the values of a box of a grid to the front, and lets go of the others.
+/// Compacts the values of a box of a grid to the front, and frees the rest.
 fn keep_box(samples: &mut Samples, [nx, ny, _]: [usize; 3], [xs, ys, zs]: &[Range<usize>; 3]) {
     with_samples!(samples, values => {
-        // What is moved comes from where it goes to, or from behind it: nothing is overwritten that is still needed.
+        // Rows are moved towards the front in ascending order, so that no value is overwritten before it is moved.
         let mut to = 0;
         for z in zs.clone() {
             for y in ys.clone() {

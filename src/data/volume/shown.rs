@@ -1,4 +1,4 @@
-//! What the densities of a volume stand for: values, or labels.
+//! Mapping from voxel values or labels to densities.
 
 use std::sync::{Arc, OnceLock};
 
@@ -6,38 +6,38 @@ use super::{DataKind, KindFound, LabelSet, Samples, Volume};
 use crate::data::ValueRange;
 use crate::data::values::samples::with_samples;
 
-/// What densities from 0 to 1 stand for.
+/// Quantity that densities from 0 to 1 represent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shown {
-    /// The values of a range; those outside count as the nearest of them.
+    /// Values of a range; values outside are clamped to it.
     Range(ValueRange),
-    /// The classes of labels ([`LabelSet`]). Where values are no labels, those that matter.
+    /// Classes of labels ([`LabelSet`]). If the values are no labels, the robust range is shown.
     Labels,
 }
 
 impl Volume {
-    /// The same voxels with densities that stand for something else.
+    /// Returns a volume with the same voxels whose densities represent another quantity.
     #[must_use]
     pub fn showing(&self, shown: impl Into<Shown>) -> Self {
         let shown = shown.into();
         if shown == Shown::Labels {
-            // Once for all copies.
+            // Counted here, so that all clones share the result.
             self.labels();
         }
         Self { shown, ..self.clone() }
     }
 
-    /// What densities stand for: the values that matter, unless something else was asked for by [`Self::showing`].
+    /// Returns the quantity that densities represent: the robust range, unless changed by [`Self::showing`].
     pub fn shown(&self) -> Shown {
         self.shown
     }
 
-    /// The labels whose classes densities stand for; `None` where they stand for values.
+    /// Returns the labels whose classes densities represent; `None` if densities represent values.
     pub fn shown_labels(&self) -> Option<&LabelSet> {
         if self.shown == Shown::Labels { self.labels() } else { None }
     }
 
-    /// The values that have densities from 0 to 1, in data units; of labels all.
+    /// Returns the range of values with densities from 0 to 1, in data units; for labels the range of all values.
     pub fn shown_range(&self) -> ValueRange {
         match self.shown {
             Shown::Range(range) => range,
@@ -46,19 +46,19 @@ impl Volume {
         }
     }
 
-    /// The range that tables of densities are made over: the values that are shown, or the classes of labels.
+    /// Returns the domain of tables over densities: the shown values, or the class indices of labels.
     pub fn table_range(&self) -> ValueRange {
         self.shown_labels().map_or_else(|| self.shown_range(), LabelSet::classes)
     }
 
-    /// The labels of the volume, if its values can be any: see [`LabelSet`]. The first to ask waits until they are
-    /// counted: about a second for 512³ voxels.
+    /// Returns the labels of the volume, if its values can be labels: see [`LabelSet`]. The first call blocks while
+    /// they are counted: about a second for 512³ voxels.
     pub fn labels(&self) -> Option<&LabelSet> {
         self.labels.get_or_init(|| LabelSet::of(self).map(Arc::new)).as_deref()
     }
 
-    /// What is known of the kind of a volume whose voxels stand for blocks of these: fewer voxels of labels are labels,
-    /// whatever can be told of them.
+    /// Returns the known kind for a volume made of blocks of these voxels: a part of a label map is a label map,
+    /// whatever its detection would say.
     pub(super) fn kind_of_parts(&self) -> OnceLock<KindFound> {
         match self.kind.get() {
             Some(found) if matches!(found.kind, DataKind::LabelMap { .. }) => OnceLock::from(found.clone()),
@@ -66,8 +66,8 @@ impl Volume {
         }
     }
 
-    /// A value in data units as a density in [0, 1]: 0 at the lowest value that is shown and below, 1 at the highest and
-    /// above; of labels that of the class. Values that are not finite have density 0.
+    /// Converts a value in data units to a density in [0, 1]: 0 at the lowest shown value and below, 1 at the highest
+    /// and above; for labels the density of their class. Values that are not finite have density 0.
     pub fn density_of(&self, value: f64) -> f64 {
         if let Some(labels) = self.shown_labels() {
             return labels.density_of(value);
@@ -75,7 +75,8 @@ impl Volume {
         density_in(self.shown_range(), value)
     }
 
-    /// The inverse of [`Self::density_of`], for values that are shown; of labels the first of a class.
+    /// Converts a density to a value, inverse to [`Self::density_of`] for shown values; for labels, to the first of a
+    /// class.
     pub fn value_of(&self, density: f64) -> f64 {
         match self.shown_labels() {
             Some(labels) => labels.number_at(density) as f64,
@@ -83,8 +84,8 @@ impl Volume {
         }
     }
 
-    /// Densities in [0, 1] of the voxels of one z-slice, x fastest. Those that hold nothing have the mean of what is
-    /// near; among labels, of which there is no mean, the density of a neighbour, or where none holds anything, 0.
+    /// Returns the densities in [0, 1] of the voxels of one z-slice, x fastest. Missing voxels get the mean of nearby
+    /// ones; among labels, which have no mean, the density of a neighbour, or 0 if all neighbours are missing.
     #[expect(
         trivial_numeric_casts,
         clippy::unnecessary_cast,
@@ -107,10 +108,10 @@ impl Volume {
         densities
     }
 
-    /// As [`Self::slice_densities`], of labels.
+    /// Computes [`Self::slice_densities`] for labels.
     fn slice_classes(&self, z: usize, labels: &LabelSet) -> Vec<f32> {
         let [nx, ny, nz] = self.dims;
-        // Neighbours are mostly equal.
+        // The last result is reused, as neighbours are mostly equal.
         let mut last = (f64::NAN, 0.0);
         let mut density = |value: f64| {
             if value != last.0 {
@@ -122,7 +123,7 @@ impl Volume {
         let mut densities: Vec<f32> =
             (first..first + nx * ny).map(|voxel| density(self.samples.value(voxel))).collect();
         let Some(missing) = self.missing() else { return densities };
-        // The nearest first: faces, edges, corners.
+        // Sorted by distance: faces, edges, corners.
         let mut beside: Vec<[isize; 3]> =
             (0..27).map(|at: isize| [at % 3 - 1, at / 3 % 3 - 1, at / 9 - 1]).collect();
         beside.sort_by_key(|offset| offset.map(isize::abs).iter().sum::<isize>());
@@ -146,7 +147,7 @@ impl From<ValueRange> for Shown {
     }
 }
 
-/// Where a value lies in a range, as a density.
+/// Returns the relative position of a value in a range, as a density.
 fn density_in(range: ValueRange, value: f64) -> f64 {
     let span = range.span();
     if value.is_finite() && span > 0.0 { ((value - range.low) / span).clamp(0.0, 1.0) } else { 0.0 }
@@ -168,7 +169,7 @@ mod tests {
         assert_eq!((labels.density_of(40.0), labels.value_of(0.7)), (2.0 / 3.0, 40.0));
         assert_eq!(labels.table_range(), ValueRange::new(0.0, 3.0));
         assert_eq!(labels.shown_range(), labels.value_range());
-        // The file's values stay what they are.
+        // The file's values are unchanged.
         assert_eq!((labels.value(1, 0, 0), labels.id()), (40.0, volume(vec![0, 40, 3, 3, 900]).id()));
         let values = labels.showing(labels.value_range());
         assert_eq!(values.slice_densities(0)[4], 1.0);
@@ -187,7 +188,7 @@ mod tests {
     #[test]
     fn among_labels_neighbours_stand_in_for_what_is_missing() {
         let padded = volume(vec![3, 255, 255, 255, 9, 9]).with_padding(255.0).unwrap().showing(Shown::Labels);
-        // No label between the two, though their mean is one.
+        // No label in between, although the mean of the two is one.
         assert_eq!(padded.slice_densities(0), [0.0, 0.0, 0.0, 1.0, 1.0, 1.0]);
     }
 }

@@ -1,4 +1,4 @@
-//! A volume of every so manyth voxel of another, and one of a portion of a file's grid.
+//! Subsampling of a volume with a stride, and extraction of a portion of a file's grid.
 
 use std::sync::Arc;
 
@@ -9,11 +9,11 @@ use crate::data::attempt::Kept;
 use crate::data::values::samples::with_samples;
 
 impl Volume {
-    /// The first voxel along each axis and then every so manyth, where they were in the world. Where nobody else holds the
-    /// volume's voxels this takes no memory beside them.
+    /// Keeps the first voxel along each axis and every `step`-th one after it; voxels keep their positions in world
+    /// space. Takes no extra memory unless the voxels are shared.
     ///
     /// # Errors
-    /// When none of these voxels is finite.
+    /// Fails if none of the kept voxels is finite.
     pub fn thinned(self, step: [usize; 3]) -> Result<Self, VolumeError> {
         let dims = self.dims();
         let step = [0, 1, 2].map(|axis| step[axis].clamp(1, dims[axis]));
@@ -35,10 +35,11 @@ impl Volume {
         Ok(Self { block, ..thinned.standing_for(&whole) })
     }
 
-    /// What is wanted of a grid, of a volume that is what was read of it: all of it, a box of it, or what is wanted already.
+    /// Extracts the wanted portion of a grid from a volume that holds the portion that was read: the whole grid, its
+    /// box, or the wanted portion itself.
     ///
     /// # Errors
-    /// As [`Volume::new`].
+    /// Fails like [`Volume::new`].
     pub(in crate::data) fn portion(self, read: &Kept, wanted: &Kept) -> Result<Self, VolumeError> {
         if read == wanted {
             return Ok(self);
@@ -51,7 +52,7 @@ impl Volume {
         if wanted.is_averaged { boxed.reduced(wanted.step) } else { boxed.thinned(wanted.step) }
     }
 
-    /// States which voxels of a file's grid these are, which were all that was read.
+    /// Records the position of the voxels in the file's grid, of which only this portion was read.
     #[must_use]
     pub(in crate::data) fn kept_of_file(self, read: &Kept) -> Self {
         let edges = DVec3::from(read.step.map(|n| n as f64));
@@ -61,8 +62,8 @@ impl Volume {
 }
 
 impl Kept {
-    /// Indices of the voxels that are kept to those of the grid: in the order of [`Volume::cropped`] and
-    /// [`Volume::reduced`], so that both ways lead to the same numbers.
+    /// Returns the transform from indices of kept voxels to world space, computed in the order of [`Volume::cropped`]
+    /// and [`Volume::reduced`], so that the results are bit-identical.
     pub(in crate::data) fn placed(&self, world_from_index: DAffine3) -> DAffine3 {
         if self.is_all() {
             return world_from_index;
@@ -84,15 +85,15 @@ impl Kept {
     }
 }
 
-/// Indices of every so manyth voxel to those of all.
+/// Returns the transform from indices after subsampling to indices before it.
 fn between(step: [usize; 3]) -> DAffine3 {
     DAffine3::from_mat3(DMat3::from_diagonal(DVec3::from(step.map(|n| n as f64))))
 }
 
-/// Moves every so manyth value of a grid to the front, and lets go of the others.
+/// Compacts the voxels at a stride to the front, and frees the rest.
 fn keep_every(samples: &mut Samples, [nx, ny, nz]: [usize; 3], [sx, sy, sz]: [usize; 3]) {
     with_samples!(samples, values => {
-        // What is moved comes from where it goes to, or from behind it.
+        // Values are moved towards the front in ascending order, so that none is overwritten before it is moved.
         let mut to = 0;
         for z in (0..nz).step_by(sz) {
             for y in (0..ny).step_by(sy) {

@@ -1,38 +1,40 @@
-//! Count of what parsing an XML text would compare, found in one pass over its bytes.
+//! Cost estimate of parsing an XML text: the name comparisons of the parser, counted in one pass over the bytes.
 
 use super::{MOST_BYTES, XmlError};
 
-/// Marks `<` and signs `=` in a text, one of which begins each node and attribute: the parser reserves memory by their
-/// number, 64 and 48 bytes each.
+/// Maximum number of `<`, and of `=`, in a text. Each node begins with one, and each attribute has one; the parser
+/// reserves memory by their number, 64 and 48 bytes each.
 const MOST_SIGNS: usize = 8 << 20;
 
-/// Deepest nesting: OME-XML has about ten levels, VTK's files five.
+/// Maximum nesting depth: OME-XML has about ten levels, VTK files five.
 const MOST_DEPTH: usize = 256;
 
-/// Comparisons of names that any text may cost: 0.1 s to 0.2 s at 3 ns to 5 ns each. An element may have 8000 attributes.
+/// Comparisons of names that any text may cost: 0.1 s to 0.2 s at 3 ns to 5 ns each. An element may have 8000
+/// attributes.
 const FREE_COMPARISONS: u64 = 32 << 20;
 
-/// Comparisons for each byte of text, likewise 0.3 s to 0.4 s for every 10 MB. An attribute has six bytes at least, so that
-/// elements with 96 attributes may follow each other without end; those of OME-XML have up to 25.
+/// Additional comparisons allowed per byte of text, likewise 0.3 s to 0.4 s for every 10 MB. An attribute has six
+/// bytes at least, so that any number of elements with 96 attributes may follow each other; those of OME-XML have up
+/// to 25.
 const COMPARISONS_PER_BYTE: u64 = 8;
 
-/// Bytes of a name that are compared at once: what is longer counts more often.
+/// Bytes of a name that are compared at once; longer names count as several comparisons.
 const WORD_BYTES: usize = 32;
 
-/// Running count of the comparisons that a text makes necessary.
+/// Running count of the comparisons that parsing a text requires.
 #[derive(Debug, Default)]
 pub(super) struct Survey {
-    /// Namespaces that hold in each open element, the innermost last.
+    /// Number of namespaces in scope of each open element, the innermost last.
     open: Vec<u64>,
     comparisons: u64,
     most_attributes: u64,
     most_namespaces: u64,
-    /// Bytes of the longest name of a namespace so far, and of the longest prefix.
+    /// Length in bytes of the longest namespace URI so far, and of the longest prefix.
     longest_uri: usize,
     longest_prefix: usize,
 }
 
-/// Counts of a start tag.
+/// Counts of attributes and namespaces in a start tag.
 #[derive(Debug, Default)]
 struct Tag {
     length: usize,
@@ -44,7 +46,7 @@ struct Tag {
 }
 
 impl Survey {
-    /// Refuses a text that would take long to parse. What is not well-formed passes: the parser stops there.
+    /// Rejects a text that would take long to parse. Text that is not well-formed passes: the parser stops there.
     pub(super) fn check(text: &str) -> Result<(), XmlError> {
         let bytes = text.as_bytes();
         let within = |what, found, most| {
@@ -56,7 +58,7 @@ impl Survey {
         Self::default().add(bytes)
     }
 
-    /// Goes through a whole text, with the parser's own rules for where each mark ends.
+    /// Scans a whole text, finding the end of each tag by the parser's own rules.
     fn add(&mut self, bytes: &[u8]) -> Result<(), XmlError> {
         let most = FREE_COMPARISONS + COMPARISONS_PER_BYTE * bytes.len() as u64;
         let mut at = 0;
@@ -72,7 +74,7 @@ impl Survey {
                 self.open.pop();
                 length_to(rest, 2, b">")
             } else if rest.starts_with(b"<!") {
-                // A document type or an error: the parser stops.
+                // A document type or an error: the parser stops here.
                 None
             } else if let Some(tag) = start_tag(rest, &mut self.longest_uri, &mut self.longest_prefix) {
                 self.count(&tag)?;
@@ -92,20 +94,20 @@ impl Survey {
         Ok(())
     }
 
-    /// Adds the comparisons that a start tag makes necessary.
+    /// Adds the comparisons that a start tag requires.
     fn count(&mut self, tag: &Tag) -> Result<(), XmlError> {
         let words = |bytes: usize| 1 + (bytes / WORD_BYTES) as u64;
         let outside = self.open.last().copied().unwrap_or(0);
-        // As if none had the prefix of an outer one.
+        // An upper bound: assumes that no declaration overrides the prefix of an outer one.
         let scope = outside + tag.namespaces;
         let all_namespaces = if tag.namespaces > 0 { scope } else { 0 };
         for (pairs, name_bytes) in [
-            // Each attribute with those before it, by its own name and, where it has a prefix, by that of its namespace.
+            // Each attribute with those before it: by its own name and, if it has a prefix, by its namespace's URI.
             (tag.attributes * tag.attributes / 2, tag.longest_name),
             (tag.prefixed * tag.prefixed / 2, self.longest_uri),
-            // The prefix of the element and of attributes with each namespace.
+            // The prefix of the element and of each attribute with every namespace in scope.
             ((tag.prefixed + 1) * scope, self.longest_prefix),
-            // Where one is declared, those outside are taken over, each compared with those that are there.
+            // Where a namespace is declared, those in scope are copied, each compared with those already copied.
             (all_namespaces * all_namespaces, self.longest_prefix),
         ] {
             self.comparisons = self.comparisons.saturating_add(pairs.saturating_mul(words(name_bytes)));
@@ -119,7 +121,7 @@ impl Survey {
     }
 }
 
-/// Counts of the start tag that bytes begin with; none where the parser would stop within it.
+/// Parses the start tag at the beginning of `bytes` to counts; `None` if the parser would stop within it.
 fn start_tag(bytes: &[u8], longest_uri: &mut usize, longest_prefix: &mut usize) -> Option<Tag> {
     let mut tag = Tag::default();
     let mut at = name_end(bytes, 1);
@@ -162,26 +164,26 @@ fn start_tag(bytes: &[u8], longest_uri: &mut usize, longest_prefix: &mut usize) 
     Some(tag)
 }
 
-/// End of the name that begins at a byte: whatever the parser takes for one, and more.
+/// Returns the end of the name at a byte offset: a superset of the names that the parser accepts.
 fn name_end(bytes: &[u8], from: usize) -> usize {
     let is_end =
         |byte: u8| byte.is_ascii_whitespace() || matches!(byte, b'=' | b'/' | b'>' | b'<' | b'"' | b'\'');
     bytes[from..].iter().position(|&byte| is_end(byte)).map_or(bytes.len(), |length| from + length)
 }
 
-/// End of the white space that begins at a byte.
+/// Returns the end of the white space at a byte offset.
 fn space_end(bytes: &[u8], from: usize) -> usize {
     let rest = bytes.get(from..).unwrap_or_default();
     from + rest.iter().take_while(|byte| byte.is_ascii_whitespace()).count()
 }
 
-/// Place of the next such byte.
+/// Returns the position of the next occurrence of a byte, at or after `from`.
 fn position(bytes: &[u8], from: usize, wanted: u8) -> Option<usize> {
     let rest = bytes.get(from..)?;
     rest.iter().position(|&byte| byte == wanted).map(|length| from + length)
 }
 
-/// Bytes to the end of the mark that ends with `end`, which is looked for from a byte on.
+/// Returns the length up to and including the delimiter `end`, searched from offset `from`.
 fn length_to(bytes: &[u8], from: usize, end: &[u8]) -> Option<usize> {
     let rest = bytes.get(from..)?;
     rest.windows(end.len()).position(|window| window == end).map(|length| from + length + end.len())
@@ -200,7 +202,7 @@ mod tests {
         };
         let survey = count("<r xmlns='u' xmlns:a='w'><b c='1' a:d='2'/><e/></r><!x <f xmlns:g='h'/>");
         assert_eq!((survey.most_attributes, survey.most_namespaces, survey.longest_prefix), (2, 2, 7));
-        // The root: 1 · 2 + 2²; b: 2² / 2 + 2 · 2, rounded down for its prefixed one; e: 2.
+        // The root: 1 · 2 + 2²; b: 2² / 2 + 2 · 2, rounded down for its prefixed attribute; e: 2.
         assert_eq!((survey.comparisons, survey.open.len()), (6 + 6 + 2, 0));
         assert_eq!(count("<r><a><b/></a>").open.len(), 1);
     }

@@ -1,25 +1,25 @@
-//! XML that is parsed and XML that is refused, with families of texts that take a parser long.
+//! Tests of the XML parser's limits, with families of texts that take a parser long.
 
 use super::*;
 
-/// A root with so many namespaces, and as many children of which each declares one more: cubic in the parser.
+/// Makes a root with `count` namespaces, and as many children that each declare one more: cubic in the parser.
 pub(crate) fn nested_namespaces(name: &str, count: usize) -> String {
     let declared = (0..count).map(|at| format!(" xmlns:a{at}=\"u{at}\"")).collect::<Vec<String>>().concat();
     format!("<{name}{declared}>{}</{name}>", "<x xmlns:q=\"z\"/>".repeat(count))
 }
 
-/// One element with so many attributes: quadratic in the parser.
+/// Makes one element with `count` attributes: quadratic in the parser.
 pub(crate) fn many_attributes(name: &str, count: usize) -> String {
     let attributes = (0..count).map(|at| format!(" a{at}=\"\"")).collect::<Vec<String>>().concat();
     format!("<{name}{attributes}/>")
 }
 
-/// Texts of less than a megabyte for which the parser alone takes from 9 s to hours, each with what is said of it. The root
-/// has that name.
+/// Texts of less than a megabyte for which the parser alone takes from 9 s to hours, each with a fragment of the
+/// expected error. The root element is called `root`.
 pub(crate) fn slow_texts(root: &str) -> Vec<(&'static str, String)> {
     let namespaces = nested_namespaces(root, 8000);
     let attributes = many_attributes(root, 60_000);
-    // The same attributes with a prefix, whose namespace has a long name.
+    // Attributes with a prefix, whose namespace has a long URI.
     let prefixed = (0..4000).map(|at| format!(" p:a{at}=\"\"")).collect::<Vec<String>>().concat();
     let prefixed = format!("<{root} xmlns:p=\"{}\"{prefixed}/>", "u".repeat(600_000));
     // Long names that differ in their last character.
@@ -28,7 +28,7 @@ pub(crate) fn slow_texts(root: &str) -> Vec<(&'static str, String)> {
         .collect::<Vec<String>>()
         .concat();
     let deep = format!("<{root}>{}{}</{root}>", "<a>".repeat(100_000), "</a>".repeat(100_000));
-    // Each level takes over those of the levels outside.
+    // Each level copies the namespaces of all outer levels.
     let stair = (0..250).map(|at| format!("<a xmlns:b{at}=\"u\">")).collect::<Vec<String>>().concat();
     let stairs = format!("<{root}>{}{}</{root}>", stair, "<x xmlns:q=\"z\"/>".repeat(10_000));
     vec![
@@ -48,7 +48,7 @@ fn what_takes_a_parser_long_is_refused_unparsed() {
         assert!(error.to_string().contains(words), "{words}: {error}");
         assert!(!error.to_string().contains('\n'), "{error}");
     }
-    // The same behind what looks like the end of the text, or like a comment.
+    // The expensive part follows what looks like the end of the text, or like a comment.
     for before in ["<?xml version=\"1.0\"?><!-- > -- <!x -->", "<?p <!x ?>", "\u{feff}"] {
         let text = format!("{before}{}", nested_namespaces("r", 2000));
         assert!(matches!(parse(&text), Err(XmlError::Comparisons { namespaces: 2001, .. })), "{before}");
@@ -63,7 +63,7 @@ fn what_takes_a_parser_long_is_refused_unparsed() {
 
 #[test]
 fn what_others_write_is_parsed() {
-    // As many planes as a long recording has, below the namespaces that the schema's own files declare.
+    // The number of planes of a long recording, below the namespaces that the schema's own files declare.
     let declared = (0..12)
         .map(|at| format!(" xmlns:N{at}=\"http://www.example.org/Schemas/{at}\""))
         .collect::<Vec<String>>()
@@ -81,7 +81,7 @@ fn what_others_write_is_parsed() {
     let document = parse(&text).unwrap();
     let count = |name: &str| document.descendants().filter(|node| node.has_tag_name(name)).count();
     assert_eq!((count("TiffData"), count("Plane"), count("Value")), (planes, planes, 10_000));
-    // A single element may have more attributes than any schema knows.
+    // A single element may have more attributes than any schema defines.
     assert_eq!(parse(&many_attributes("a", 5000)).unwrap().root_element().attributes().count(), 5000);
     assert!(parse(&nested_namespaces("r", 200)).is_ok());
 }
@@ -100,7 +100,7 @@ fn what_is_broken_or_too_much_is_named() {
         let error = parse(text).unwrap_err().to_string();
         assert!(error.contains(words), "{text}: {error}");
     }
-    // The parser repeats the name.
+    // The parser quotes the name in its error.
     let name = format!("<{}>\n</b>", "a".repeat(1 << 20));
     assert!(parse(&name).unwrap_err().to_string().len() < 2 * LONGEST_REASON);
     for (text, words) in [
@@ -112,6 +112,6 @@ fn what_is_broken_or_too_much_is_named() {
         let error = parse(&text).unwrap_err().to_string();
         assert!(error.contains(words), "{error}");
     }
-    // Long, and nothing else.
+    // A long comment and a long text are cheap.
     assert!(parse(&format!("<a><!--{}-->{}</a>", " <".repeat(1 << 20), "b".repeat(8 << 20))).is_ok());
 }

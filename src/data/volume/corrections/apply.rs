@@ -1,4 +1,4 @@
-//! Volumes as a user knows them better than their files: made from what was opened, with which they share the voxels.
+//! Application of corrections to a volume, which shares its voxels with the opened one where values are unaffected.
 
 use std::sync::Arc;
 
@@ -10,49 +10,49 @@ use crate::data::attempt::{is_usable_affine, memory_budget_bytes};
 use crate::data::volume::{Volume, VolumeError};
 use crate::math::SceneSpace;
 
-/// What a volume was made from.
+/// Corrections of a volume, and the opened volume they were applied to.
 #[derive(Debug, Clone)]
 pub(in crate::data::volume) struct Corrected {
     by: Corrections,
     opened: Volume,
 }
 
-/// No corrections, for volumes without.
+/// Default corrections, for volumes without any.
 static NONE: std::sync::LazyLock<Corrections> = std::sync::LazyLock::new(Corrections::default);
 
-/// Distances between voxels, and whether they are lengths at all.
+/// Corrected voxel spacings in mm, and the scale of the origin.
 struct Distances {
     along_axes: [f64; 3],
-    /// What is left of an origin in the file's unit.
+    /// Factor that converts the origin from the file's unit to mm.
     of_origin: f64,
 }
 
 impl Volume {
-    /// The volume as it was opened, whatever has been corrected since.
+    /// Returns the volume as opened, without any corrections.
     pub fn as_opened(&self) -> &Self {
         self.corrected.as_ref().map_or(self, |corrected| &corrected.opened)
     }
 
-    /// How it differs from the volume that was opened.
+    /// Returns the corrections that were applied to the opened volume.
     pub fn corrections(&self) -> &Corrections {
         self.corrected.as_ref().map_or(&NONE, |corrected| &corrected.by)
     }
 
-    /// Identifies what was opened: see [`Self::content_id`].
+    /// Returns the content id of the opened volume: see [`Self::content_id`].
     pub fn opened_id(&self) -> u64 {
         self.as_opened().content_id
     }
 
-    /// Whether another volume has the voxels of this one in the same memory, with the same ones missing.
+    /// Returns true if both volumes share their voxels in memory and treat the same ones as missing.
     pub(in crate::data) fn shares_voxels(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.samples, &other.samples) && self.padding_value == other.padding_value
     }
 
-    /// The volume that was opened, corrected: whatever has been corrected before does not count. Where the values stay,
-    /// it takes no time and no memory.
+    /// Applies corrections to the opened volume, replacing any earlier ones. Takes no time and no memory if they
+    /// leave the values unchanged.
     ///
     /// # Errors
-    /// When no voxels are left that hold something, values or places cannot be told apart, or the memory is not there.
+    /// Fails if all voxels become missing, values or positions degenerate, or memory is short.
     pub fn corrected(&self, by: &Corrections) -> Result<Self, VolumeError> {
         let opened = self.as_opened();
         if by.is_none() {
@@ -69,7 +69,7 @@ impl Volume {
             _ => opened.with_values(by)?,
         };
         volume.world_from_index = world_from_index;
-        // Opacities refer to the same share of the object.
+        // Scaled with the object, so that opacities stay the same for every share of it.
         let longer = volume.scene().mm_per_unit / opened.scene().mm_per_unit;
         volume.unit_mm = opened.unit_mm.map(|unit| unit * longer);
         volume.is_anatomical = match by.orientation {
@@ -81,7 +81,7 @@ impl Volume {
             None => opened.length_unit,
             Some(unit) => unit,
         };
-        // What is said of a volume differs with all of them, and whatever is kept of it goes with what identifies it.
+        // Derived facts differ with every correction, and caches are keyed by this id, so it depends on all of them.
         let words = format!("{by:?}");
         volume.content_id = words.bytes().fold(opened.content_id, |hash, byte| {
             (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
@@ -90,18 +90,18 @@ impl Volume {
         Ok(volume)
     }
 
-    /// How the grid would lie in scene space.
+    /// Returns the scene space that the grid would have with these corrections.
     pub fn corrected_scene(&self, by: &Corrections) -> SceneSpace {
         let opened = self.as_opened();
         SceneSpace::new(opened.dims, opened.corrected_affine(by))
     }
 
-    /// Distances between the voxels of the file, of which one of the volume may be the mean of several.
+    /// Returns the spacings of the file's voxels in mm; a voxel of the volume may be the mean of several of them.
     pub fn file_spacing_mm(&self) -> DVec3 {
         self.spacing_mm() / self.block.steps()
     }
 
-    /// The same volume with other values.
+    /// Returns the volume with rescaled values and another padding value.
     fn with_values(&self, by: &Corrections) -> Result<Self, VolumeError> {
         let scale = by.value_scale;
         let samples = if scale.is_none() {
@@ -130,7 +130,7 @@ impl Volume {
         })
     }
 
-    /// Where voxels lie.
+    /// Computes the corrected transform from index space to world space.
     fn corrected_affine(&self, by: &Corrections) -> DAffine3 {
         let Corrections { spacing, unit, flip, axis_order, orientation, padding_value: _, value_scale: _ } =
             by;
@@ -142,7 +142,7 @@ impl Volume {
         if !is_moved {
             return self.world_from_index;
         }
-        // Of the voxels in the file, of which a volume may have one for several.
+        // Corrections refer to the voxels of the file; a voxel of the volume may stand for a block of them.
         let file_from_index = self.block.file_from_index();
         let world_from_file = match file_from_index {
             Some(file_from_index) => self.world_from_index * file_from_index.inverse(),
@@ -171,10 +171,10 @@ impl Volume {
 }
 
 impl Distances {
-    /// Those of a file, or those that somebody gives instead, in a unit.
+    /// Computes spacings from those of the file, or those given instead, in a unit.
     fn of(in_file: [f64; 3], given: Option<[f64; 3]>, unit: Option<SpacingUnit>) -> Self {
         let unit_mm = unit.map_or(1.0, SpacingUnit::mm);
-        // Where only the unit was wrong, it was of the origin, too.
+        // If only the unit was wrong, it was wrong for the origin, too.
         let of_origin = if given.is_some() { 1.0 } else { unit_mm };
         Self { along_axes: given.unwrap_or(in_file).map(|length| length * unit_mm), of_origin }
     }

@@ -1,13 +1,13 @@
-//! Numbers of a file with another meaning, in a type that can hold them.
+//! Rescaling of a volume's values, in a number type that can hold them.
 
 use super::ValueScale;
 use crate::data::values::samples::with_samples;
 use crate::data::{Hints, Samples, ValueRange, VolumeError};
 
-/// Whole numbers of these types keep a whole slope and intercept; all others become numbers with a point.
+/// Defines `whole` over the integer types; other scaled values become floating-point numbers.
 macro_rules! narrowest {
     ($($variant:ident: $type:ty),+) => {
-        /// The values in the narrowest type of whole numbers that holds them all; `None` where none does.
+        /// Converts scaled values to the first of these integer types that holds them all; `None` if none does.
         #[expect(trivial_numeric_casts, reason = "one of the eight types is f64 already")]
         fn whole(
             samples: &Samples,
@@ -30,7 +30,7 @@ macro_rules! narrowest {
 
 narrowest!(U8: u8, I8: i8, U16: u16, I16: i16, U32: u32, I32: i32);
 
-/// One value for each, where the memory for them is there, and they need no more than `budget_bytes`.
+/// Maps each value, if the result takes at most `budget_bytes` and the memory can be allocated.
 fn each<T, R>(values: &[T], budget_bytes: u64, value: impl Fn(&T) -> R) -> Result<Vec<R>, VolumeError> {
     let mut scaled = Vec::new();
     let bytes = (values.len() as u64).saturating_mul(size_of::<R>() as u64);
@@ -42,8 +42,8 @@ fn each<T, R>(values: &[T], budget_bytes: u64, value: impl Fn(&T) -> R) -> Resul
     Ok(scaled)
 }
 
-/// What numbers mean: whole numbers stay whole where slope and intercept are. The values may need `budget_bytes` beside
-/// the numbers: floats of bytes are four times as long.
+/// Applies a scale to all values: integers stay integers if slope and intercept are. The result may take
+/// `budget_bytes` beside the numbers: 32-bit floats are four times as long as bytes.
 #[expect(trivial_numeric_casts, clippy::unnecessary_cast, reason = "one of the eight types is f64 already")]
 pub(super) fn scaled(
     samples: &Samples,
@@ -61,7 +61,7 @@ pub(super) fn scaled(
     {
         return Ok(whole);
     }
-    // 32 bits hold every number of 16 bits, and what they were in a file.
+    // 32-bit floats hold every integer of 16 bits exactly, and they are the type of float files.
     let is_short = !matches!(samples, Samples::U32(_) | Samples::I32(_) | Samples::F64(_));
     if is_short && range.low.abs().max(range.high.abs()) < f64::from(f32::MAX) {
         let value = |number: f64| scale.value(number) as f32;
@@ -72,7 +72,7 @@ pub(super) fn scaled(
         .map(Samples::F64)
 }
 
-/// What a file says of its numbers, of the values that these mean.
+/// Applies a scale to the metadata: padding value, display window and labels.
 pub(super) fn scaled_hints(hints: &Hints, scale: ValueScale) -> Hints {
     let mut scaled = hints.clone();
     scaled.padding = hints.padding.map(|number| scale.value(number));

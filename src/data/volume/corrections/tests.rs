@@ -1,4 +1,5 @@
-//! Tests of corrections: what they leave, what they undo, and that they make of a volume what a file would have.
+//! Tests of corrections: what they preserve, that they can be undone, and that they match a file with the corrected
+//! metadata.
 
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -7,7 +8,7 @@ use crate::data::{Dataset, Hints, Samples, Shown, Volume, VolumeError};
 
 const DIMS: [usize; 3] = [5, 4, 3];
 
-/// Voxels that all differ, sheared and away from the origin, as some files have it.
+/// Makes a volume whose voxels all differ, with a sheared grid away from the origin, as in some files.
 fn volume() -> Volume {
     let axes =
         DMat3::from_cols(DVec3::new(0.5, 0.1, 0.0), DVec3::new(-0.2, 0.7, 0.1), DVec3::new(0.0, 0.3, -2.0));
@@ -26,7 +27,7 @@ fn with(change: impl FnOnce(&mut Corrections)) -> Corrections {
     corrections
 }
 
-/// One of each kind.
+/// Returns one example of each kind of correction.
 fn all() -> Vec<Corrections> {
     vec![
         with(|by| by.spacing = Some([0.25, 1.5, 3.0])),
@@ -43,7 +44,7 @@ fn all() -> Vec<Corrections> {
     ]
 }
 
-/// Where the corners of a grid lie.
+/// Returns the world positions of the corner voxels of a grid.
 fn corners(volume: &Volume) -> Vec<DVec3> {
     let last = DVec3::from(volume.dims().map(|n| n as f64 - 1.0));
     let corner = |at: usize| DVec3::new((at & 1) as f64, (at >> 1 & 1) as f64, (at >> 2) as f64) * last;
@@ -94,7 +95,7 @@ fn only_other_values_take_memory() {
     }
 }
 
-/// To the last bit, so that pictures are the same.
+/// Tests for exact equality, so that pictures are identical.
 #[test]
 fn distances_are_those_of_a_file_that_says_so() {
     let said = spaced([0.1, 0.7, 3.0]);
@@ -137,7 +138,7 @@ fn what_is_flipped_lies_in_the_same_place_the_other_way_round() {
         let apart = after.transform_point3(DVec3::new(x, y, z)) - before.transform_point3(mirrored);
         assert!(apart.length() < 1e-12);
     }
-    // Twice is not at all: the same again on a file that lies as the flipped one does.
+    // Flipping twice restores the geometry: tested on a file that lies as the flipped volume does.
     let file = Volume::new("t", DIMS, after, opened.samples().clone()).unwrap();
     let twice = file.corrected(&with(|by| by.flip.y = true)).unwrap().world_from_index();
     assert!(twice.abs_diff_eq(before, 1e-12), "{twice:?}");
@@ -148,7 +149,7 @@ fn orders_of_axes_are_undone_by_their_inverse() {
     for order in AxisOrder::ALL {
         let opened = volume();
         let turned = opened.corrected(&with(|by| by.axis_order = order)).unwrap();
-        // Distances belong to the axes of the file.
+        // Spacings belong to the axes of the file.
         assert!((turned.spacing_mm() - opened.spacing_mm()).length() < 1e-12);
         let file = Volume::new("t", DIMS, turned.world_from_index(), opened.samples().clone()).unwrap();
         let back = file.corrected(&with(|by| by.axis_order = order.inverse())).unwrap();
@@ -313,7 +314,7 @@ fn numbers_that_cannot_be_meant_are_let_go() {
         by.sanitise();
         assert_eq!(by, before);
     }
-    // A unit may make of usable numbers what is none.
+    // A unit may turn usable numbers into unusable ones.
     let far = |by: &mut Corrections| (by.spacing, by.unit) = (Some([1e8; 3]), Some(SpacingUnit::M));
     assert_eq!(sane(far).spacing, None);
 }

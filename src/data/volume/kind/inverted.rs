@@ -1,27 +1,27 @@
-//! Objects that are darker than what is around them.
+//! Detection of dark objects on a bright background.
 
 use super::sampled::{Sampled, quantile};
 use super::{DataKind, KindFound};
 
-/// Share of the values at either end that are outliers where it is asked how bright something is.
+/// Share of the values at either end that count as outliers when brightness is measured.
 const OUTERMOST: f64 = 0.005;
 
-/// Where in the range of the values (without [`OUTERMOST`] on either side) the middle of the surroundings lies, at
-/// least. Of 36 volumes, faces of those that are bright on dark are at 0.65 at most; and zero, which is around signed
-/// fields, is at 0.74 at most, or they would not be balanced enough.
+/// Minimum brightness of a face's median, relative to the range of values without [`OUTERMOST`] at either end. Of 36
+/// volumes, faces of those that are bright on dark reach 0.65 at most; and zero, the background of signed fields, is
+/// at 0.74 at most, or they would not be balanced enough.
 const LEAST_BRIGHTNESS: f64 = 0.75;
 
-/// Faces that show the surroundings: one may cut the object.
+/// Number of the six faces that must show the background: one may cut the object.
 pub(super) const FACES: usize = 5;
 
-/// Share of a face that may be of the object: a rod that leaves through it has a few hundredths.
+/// Maximum share of a face that may belong to the object: a rod that leaves through it covers a few hundredths.
 pub(super) const MOST_OF_OBJECT: f64 = 0.05;
 
-/// Faces of the volume in the upper of its two classes, which is the larger.
+/// Detects volumes whose faces are in the brighter of two classes, which is also the larger one.
 pub(super) fn dark_on_bright(sampled: &Sampled<'_>) -> Option<KindFound> {
     let (low, high) = (sampled.quantile(OUTERMOST), sampled.quantile(1.0 - OUTERMOST));
     let split = sampled.split();
-    // What is around is more than the object.
+    // The background must be larger than the object.
     if high <= low || sampled.share(f64::NEG_INFINITY, split) > 0.5 {
         return None;
     }

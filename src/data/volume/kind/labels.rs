@@ -1,45 +1,46 @@
-//! Masks and label maps: few values, each of which fills regions.
+//! Detection of masks and label maps: few distinct values, each of which fills regions.
 
 use super::inverted::{FACES, MOST_OF_OBJECT};
 use super::sampled::{Sampled, distinct_of_all};
 use super::{DataKind, KindFound};
 use crate::data::{MAX_LABELS, Volume};
 
-/// Share of neighbours, both of them of some label, that have the same one, at least. Label maps have 0.88 and more,
-/// the scalar volume that comes nearest 0.76.
+/// Minimum share of equal pairs among pairs of labelled neighbours. Label maps have 0.88 and more, the closest scalar
+/// volume has 0.76.
 const LEAST_EQUAL: f64 = 0.85;
 
-/// The same for the label in the middle of all, at least: the smallest may be specks. Values that only occur where an
-/// object ends, as between a thing and air, have hardly any neighbours like them; of a label that fills regions most are.
+/// Minimum share of equal pairs for the median label: the smallest labels may be specks. Values that occur only at
+/// borders of an object, as between material and air, have hardly any equal neighbours; labels that fill regions have
+/// mostly equal ones.
 const LEAST_EQUAL_OF_ONE: f64 = 0.5;
 
-/// Share of unequal neighbours that are not next to each other in the order of all values, at least. Along smooth
-/// fields of few values it is next to nothing, in label maps 0.84 and more: well apart from both.
+/// Minimum share of unequal neighbours that are not adjacent in the order of all values. Along smooth fields of few
+/// values it is close to 0, in label maps 0.84 and more: a threshold well apart from both.
 const LEAST_JUMPS: f64 = 0.3;
 
-/// From so many values on there are jumps in label maps: of three labels around each other there are none. Those count
-/// from one, or leave out one or two; other numbers, such as 0, 90 and 220, are of materials.
+/// Minimum number of values at which label maps must have such jumps: three nested labels have none. Fewer labels are
+/// numbered from 1 with at most one or two gaps; other numbers, such as 0, 90 and 220, denote materials.
 const VALUES_WITH_JUMPS: usize = 5;
 
-/// Values that only labels have are whole, and not too large for a number that counts things.
+/// Maximum number of a label: labels are integers no larger than counts of objects.
 const LARGEST_LABEL: f64 = (1u64 << 32) as f64;
 
-/// How many labels a volume has, without the lowest value, which is what is around them.
+/// Counts the labels of a volume, without the lowest value, which is the background.
 pub(super) fn count(volume: &Volume) -> usize {
     let distinct = distinct_of_all(volume, MAX_LABELS + 1).map_or(MAX_LABELS + 1, |all| all.len());
-    // Everything is labelled where the lowest value is above zero.
+    // Everything is labelled if the lowest value is above zero.
     distinct.saturating_sub(usize::from(volume.value_range().low <= 0.0))
 }
 
-/// Two values, one of which is not all around.
+/// Detects masks: two values, of which the higher is not the background.
 pub(super) fn mask(volume: &Volume, sampled: &Sampled<'_>) -> Option<KindFound> {
-    // Most volumes have more among the first few voxels already.
+    // Early exit: most volumes have more values among the sampled voxels already.
     sampled.distinct(2)?;
     let all = distinct_of_all(volume, 2)?;
     let [low, high] = all[..] else { return None };
     let is_around =
         |value: f64| sampled.faces().iter().filter(|face| is_mostly(face, value)).count() >= FACES;
-    // What surrounds an object of which there is more is its border.
+    // If the background is also the larger part, the object is the lower value.
     if is_around(high) && sampled.share_of(low) < 0.5 {
         return Some(KindFound::new(
             DataKind::DarkOnBright,
@@ -49,16 +50,16 @@ pub(super) fn mask(volume: &Volume, sampled: &Sampled<'_>) -> Option<KindFound> 
     Some(KindFound::new(DataKind::Mask, format!("there are two values, {low} and {high}")))
 }
 
-/// Whether a face shows one value, but for the share that may be of an object.
+/// Returns true if a face shows one value, apart from the share that may belong to an object.
 fn is_mostly(face: &[f64], value: f64) -> bool {
     let equal = face.iter().filter(|&&other| other == value).count();
     !face.is_empty() && equal as f64 >= (1.0 - MOST_OF_OBJECT) * face.len() as f64
 }
 
-/// Neighbours, counted.
+/// Statistics of pairs of neighbouring voxels.
 #[derive(Default)]
 struct Pairs {
-    /// For each value but the lowest: pairs of it with any other but the lowest, and with itself.
+    /// Counts for each value except the lowest: all pairs with values other than the lowest, and equal pairs.
     of_value: Vec<Pair>,
     unequal: f64,
     jumps: f64,
@@ -85,7 +86,7 @@ impl Pairs {
     }
 }
 
-/// Whole numbers that fill regions and end abruptly.
+/// Detects label maps: integers that fill regions and end abruptly.
 pub(super) fn label_map(volume: &Volume, sampled: &Sampled<'_>) -> Option<KindFound> {
     let distinct = sampled.distinct(MAX_LABELS)?;
     if distinct.len() < 2 || distinct.iter().any(|value| value.fract() != 0.0 || value.abs() > LARGEST_LABEL)

@@ -1,34 +1,35 @@
-//! The values of a volume in order, of every voxel or of one in so many; and what neighbours have to do with each other.
+//! Sampled voxel values in sorted order, for the detection of the kind of data, and statistics of neighbouring
+//! voxels.
 
 use rayon::prelude::*;
 
 use crate::data::Volume;
 
-/// Voxels that are looked at: of larger volumes, one in so many along each axis.
+/// Approximate maximum number of sampled voxels; larger volumes are subsampled along each axis.
 const LOOKED_AT: f64 = (1u64 << 21) as f64;
 
-/// At most so many voxels along an edge of a face are looked at.
+/// Maximum number of sampled voxels along an edge of a face.
 const FACE_EDGE: usize = 128;
 
-/// A spike has at least this share of the voxels, and is apart from the others by this share of their range: edges of
-/// objects fill the gap between a background that was measured and what is in it. Both are those from which values are
-/// padding for the range that matters (`values/robust.rs`).
+/// Criteria of a spike: minimum share of the voxels, and minimum gap to the other values as a share of their range.
+/// Edges of objects fill the gap between a measured background and the object. Both match the criteria of padding in
+/// the robust range (`values/robust.rs`).
 const SPIKE_SHARE: f64 = 0.01;
 const SPIKE_GAP: f64 = 0.05;
 
-/// Share of the values at an end that are outliers where the range of the others is asked for: of the two million voxels
-/// that are looked at, two thousand.
+/// Share of the values at an end that count as outliers when the range of the others is measured: two thousand of the
+/// two million sampled voxels.
 const OUTERMOST: f64 = 0.001;
 
-/// Values of voxels, in order.
+/// Sorted values of sampled voxels.
 pub(super) struct Sampled<'a> {
     volume: &'a Volume,
-    /// Of those that hold something, ascending.
+    /// Values that are finite and not padding, ascending.
     pub(super) values: Vec<f64>,
-    /// What the file says is no value.
+    /// Padding value declared by the file.
     padding: Option<f64>,
     step: usize,
-    /// The lowest and the highest value, where [`Self::without_spikes`] has found them to be none.
+    /// Lowest and highest value removed by [`Self::without_spikes`], if any.
     spikes: [Option<f64>; 2],
 }
 
@@ -53,24 +54,24 @@ impl<'a> Sampled<'a> {
         Self { volume, values, padding, step, spikes: [None; 2] }
     }
 
-    /// The value below which a share of the voxels lies.
+    /// Returns the value below which a share of the voxels lies.
     pub(super) fn quantile(&self, share: f64) -> f64 {
         quantile(&self.values, share)
     }
 
-    /// The share of the voxels with values from `low` to below `high`.
+    /// Returns the share of the voxels with values from `low` to below `high`.
     pub(super) fn share(&self, low: f64, high: f64) -> f64 {
         let below = |value: f64| self.values.partition_point(|&other| other < value);
         (below(high) - below(low)) as f64 / self.values.len().max(1) as f64
     }
 
-    /// The share of the voxels that have a value.
+    /// Returns the share of the voxels with exactly this value.
     pub(super) fn share_of(&self, value: f64) -> f64 {
         let count = self.values.iter().filter(|&&other| other == value).count();
         count as f64 / self.values.len().max(1) as f64
     }
 
-    /// Of the values that are not zero, those below and above which a share lies; nothing where all are zero.
+    /// Returns the two quantiles of the nonzero values at `share` from either end; `None` if all values are zero.
     pub(super) fn nonzero_quantiles(&self, share: f64) -> Option<(f64, f64)> {
         let below = self.values.partition_point(|&value| value < 0.0);
         let above = self.values.len() - self.values.partition_point(|&value| value <= 0.0);
@@ -79,7 +80,7 @@ impl<'a> Sampled<'a> {
             return None;
         }
         let at = |index: usize| {
-            // Zeros, which are between the two, are left out.
+            // Zeros, which lie between the two, are left out.
             let zeros = self.values.len() - count;
             self.values[if index < below { index } else { index + zeros }]
         };
@@ -87,7 +88,8 @@ impl<'a> Sampled<'a> {
         Some((at(index.min(count - 1)), at(count - 1 - index.min(count - 1))))
     }
 
-    /// Of the neighbours of voxels whose values are beyond one (seen from zero), the share beyond half of it.
+    /// Returns, among the neighbours of voxels whose values are beyond `value` (seen from zero), the share beyond
+    /// half of it.
     pub(super) fn coherence_beyond(&self, value: f64) -> f64 {
         let is_beyond = |one: f64, value: f64| if value < 0.0 { one <= value } else { one >= value };
         let [strong, alike] = self.pairs(
@@ -104,8 +106,8 @@ impl<'a> Sampled<'a> {
         if strong > 0.0 { alike / strong } else { 0.0 }
     }
 
-    /// The same without a lowest or highest value that many voxels have and that is far from all others: such values
-    /// stand for what was not measured.
+    /// Removes the lowest and the highest value if they are spikes: values of many voxels, far from all others, that
+    /// stand for voxels not measured.
     pub(super) fn without_spikes(mut self) -> Self {
         if let Some(spike) = self.spike(|values, at| values[at]) {
             let count = self.values.partition_point(|&value| value <= spike);
@@ -120,7 +122,7 @@ impl<'a> Sampled<'a> {
         self
     }
 
-    /// The first of values that come one after another, if it is a spike.
+    /// Returns the first value of a sequence, accessed by `at`, if it is a spike.
     fn spike(&self, at: impl Fn(&[f64], usize) -> f64) -> Option<f64> {
         let all = self.values.len();
         let first = (all > 0).then(|| at(&self.values, 0))?;
@@ -128,18 +130,18 @@ impl<'a> Sampled<'a> {
         if count == all || (count as f64) < SPIKE_SHARE * all as f64 {
             return None;
         }
-        // Of what is left.
+        // Criteria refer to the remaining values.
         let rest = (all - count) as f64;
         let next = at(&self.values, count);
         let other_end = at(&self.values, all - 1 - (OUTERMOST * rest) as usize);
         ((next - first).abs() >= SPIKE_GAP * (other_end - next).abs()).then_some(first)
     }
 
-    /// Different values in order, if there are at most so many.
+    /// Returns the distinct values in ascending order, if there are at most `most`.
     pub(super) fn distinct(&self, most: usize) -> Option<Vec<f64>> {
         let mut distinct: Vec<f64> = Vec::new();
         for &value in &self.values {
-            // Of 0 and −0 there is one.
+            // 0 and −0 compare as equal.
             if distinct.last() != Some(&value) {
                 if distinct.len() == most {
                     return None;
@@ -150,8 +152,8 @@ impl<'a> Sampled<'a> {
         Some(distinct)
     }
 
-    /// For every pair of neighbours along an axis that hold something, of those voxels that are looked at, what `count`
-    /// adds.
+    /// Accumulates `count` over all pairs of neighbours along an axis, at sampled voxels, that are finite and not
+    /// padding.
     pub(super) fn pairs<T: Send + Default>(
         &self,
         count: impl Fn(&mut T, f64, f64) + Sync,
@@ -187,8 +189,8 @@ impl<'a> Sampled<'a> {
             .reduce(T::default, sum)
     }
 
-    /// The values of each of the six faces that hold something, in order; some of them where there are many. A face that
-    /// holds nothing has none.
+    /// Returns the sorted values of each of the six faces, subsampled if there are many, without padding; a face of
+    /// only padding is empty.
     pub(super) fn faces(&self) -> [Vec<f64>; 6] {
         let dims = self.volume.dims();
         std::array::from_fn(|face| {
@@ -210,9 +212,10 @@ impl<'a> Sampled<'a> {
         })
     }
 
-    /// The value that best splits all of them in two (Otsu 1979), in bins between the outermost thousandths.
+    /// Returns the threshold that best splits the values into two classes (Otsu 1979), in bins between the outermost
+    /// thousandths.
     pub(super) fn split(&self) -> f64 {
-        // As many as 8-bit data have values.
+        // The number of values of 8-bit data.
         const BINS: usize = 256;
         let (low, high) = (self.quantile(OUTERMOST), self.quantile(1.0 - OUTERMOST));
         let value = |bin: usize| low + (high - low) * bin as f64 / BINS as f64;
@@ -237,31 +240,31 @@ impl<'a> Sampled<'a> {
     }
 }
 
-/// The value below which a share of ordered values lies; NaN where there are none.
+/// Returns the value below which a share of sorted values lies; NaN if there are none.
 pub(super) fn quantile(values: &[f64], share: f64) -> f64 {
     let at = (share * values.len() as f64) as usize;
     values.get(at.min(values.len().saturating_sub(1))).copied().unwrap_or(f64::NAN)
 }
 
-/// What a volume's file says is no value; also where the volume has no other, which is shown as it is then.
+/// Returns the padding value that the file declares, even if the volume has no other values and so shows it.
 fn declared_padding(volume: &Volume) -> Option<f64> {
     volume.padding_value().or(volume.hints().padding)
 }
 
-/// Whether there is something where a voxel has this value.
+/// Returns true if a value is finite and not padding.
 fn holds_something(value: f64, padding: Option<f64>) -> bool {
     value.is_finite() && Some(value) != padding
 }
 
-/// Different values of all voxels that hold something in order, if there are at most so many.
+/// Returns the distinct values of all voxels in ascending order, without padding, if there are at most `most`.
 pub(super) fn distinct_of_all(volume: &Volume, most: usize) -> Option<Vec<f64>> {
     let (samples, padding) = (volume.samples(), declared_padding(volume));
     let mut distinct: Vec<f64> = Vec::new();
     let mut last = f64::NAN;
     for voxel in 0..samples.len() {
-        // Of 0 and −0 there is one.
+        // Adding 0 turns −0 into 0.
         let value = samples.value(voxel) + 0.0;
-        // Neighbours are mostly equal.
+        // A shortcut: neighbours are mostly equal.
         if value == last || !holds_something(value, padding) {
             continue;
         }
