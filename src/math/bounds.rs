@@ -1,26 +1,26 @@
-//! Axis-aligned boxes.
+//! Axis-aligned bounding boxes in double precision.
 
 use glam::DVec3;
 
-/// An axis-aligned box, in whatever space its maker says.
+/// Axis-aligned bounding box; the code that builds it defines the space and unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
-    /// The corner with the smallest coordinates.
+    /// Corner with the smallest coordinates.
     pub min: DVec3,
-    /// The corner with the largest coordinates.
+    /// Corner with the largest coordinates.
     pub max: DVec3,
 }
 
 impl Bounds {
-    /// The box of a grid of `dims` voxels in index space, grown by `pad` voxels on every side.
+    /// Returns the bounding box of a grid of `dims` voxels in index space, grown by `pad` voxels on every side.
     ///
-    /// Voxel centres lie at integers, so the box of the voxels themselves is `[-½, n − ½]`.
+    /// Voxel centres lie at integers, so the box without padding is `[-½, n − ½]` along each axis.
     pub fn of_grid(dims: [usize; 3], pad: f64) -> Self {
         let n = DVec3::new(dims[0] as f64, dims[1] as f64, dims[2] as f64);
         Self { min: DVec3::splat(-0.5 - pad), max: n - DVec3::splat(0.5 - pad) }
     }
 
-    /// The eight corners of the box.
+    /// Returns the eight corners of the box; bit `a` of a corner's index selects `max` along axis `a`.
     pub fn corners(&self) -> [DVec3; 8] {
         std::array::from_fn(|corner| {
             let pick = |axis: usize| if corner >> axis & 1 == 0 { self.min[axis] } else { self.max[axis] };
@@ -28,7 +28,7 @@ impl Bounds {
         })
     }
 
-    /// The smallest box around some points (empty input gives an inverted box).
+    /// Returns the bounding box of the points; no points give an inverted box (`min` = +∞, `max` = −∞).
     pub fn around(points: impl IntoIterator<Item = DVec3>) -> Self {
         let empty = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
         points

@@ -1,7 +1,7 @@
-//! Spaces and small geometry: what everything else may use and what knows nothing else.
+//! Coordinate spaces, geometry primitives and colour conversions; every module may use them, and they depend on none.
 //!
-//! Names of transforms read right to left: `scene_from_index` takes a point in index space and
-//! gives it in scene space. All of this is f64; the GPU gets f32 at the very end.
+//! Names of transforms read right to left: `scene_from_index` maps a point in index space to scene space. All of this
+//! is f64; values are converted to f32 when they are uploaded to the GPU.
 
 mod bounds;
 mod false_color;

@@ -1,51 +1,52 @@
-//! Convex parts of a grid: a box along its axes, cut by a plane.
+//! Convex clip regions: an axis-aligned box intersected with a half-space, and ray intersection.
 
 use glam::DVec3;
 
 use super::Bounds;
 
-/// A half-space: all points with normal · p ≤ offset.
+/// Half-space of all points with normal · p ≤ offset.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HalfSpace {
-    /// Of length 1; it points to what is not part of it.
+    /// Unit normal of the boundary plane, pointing out of the half-space.
     pub normal: DVec3,
-    /// Of the plane from the origin, along the normal.
+    /// Signed distance of the boundary plane from the origin, along the normal.
     pub offset: f64,
 }
 
 impl HalfSpace {
-    /// How far a point lies within; negative outside.
+    /// Returns the signed distance of a point from the boundary plane: positive inside the half-space, negative
+    /// outside.
     pub fn depth_of(&self, point: DVec3) -> f64 {
         self.offset - self.normal.dot(point)
     }
 }
 
-/// A convex part of index space.
+/// Convex part of index space: a box along the axes, intersected with a half-space if there is one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Region {
-    /// Nothing lies below this along any axis; minus infinity where nothing is cut.
+    /// Lower bounds along the axes; −∞ where nothing is clipped.
     pub low: DVec3,
-    /// Nor above this.
+    /// Upper bounds along the axes; +∞ where nothing is clipped.
     pub high: DVec3,
-    /// Nor outside this.
+    /// Half-space that clips the box, if any.
     pub plane: Option<HalfSpace>,
 }
 
 impl Region {
-    /// All of space.
+    /// Unbounded region that clips nothing.
     pub const EVERYTHING: Self = Self { low: DVec3::NEG_INFINITY, high: DVec3::INFINITY, plane: None };
 
-    /// What of it lies within a box.
+    /// Returns the intersection with an axis-aligned box.
     #[must_use]
     pub fn within(&self, bounds: &Bounds) -> Self {
         Self { low: self.low.max(bounds.min), high: self.high.min(bounds.max), plane: self.plane }
     }
 
-    /// Where a ray enters and where it leaves, in lengths of its direction; the first is the larger one if it
-    /// never enters.
+    /// Returns the ray parameters at entry and exit, in multiples of the length of `direction` (slab method). The
+    /// entry exceeds the exit if the ray misses the region.
     pub fn span(&self, origin: DVec3, direction: DVec3) -> (f64, f64) {
         let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
-        // Each bound: how far the origin lies within it, and how fast the ray gets deeper.
+        // Each boundary: signed depth of the origin inside it, and the rate at which that grows along the ray.
         let mut bound = |depth: f64, speed: f64| {
             if speed > 0.0 {
                 enter = enter.max(-depth / speed);
@@ -65,7 +66,7 @@ impl Region {
         (enter, leave)
     }
 
-    /// Whether a point is part of it.
+    /// Returns true if a point lies inside the region or on its boundary.
     pub fn contains(&self, point: DVec3) -> bool {
         let in_box = point.cmpge(self.low).all() && point.cmple(self.high).all();
         in_box && self.plane.is_none_or(|plane| plane.depth_of(point) >= 0.0)

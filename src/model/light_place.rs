@@ -1,41 +1,44 @@
-//! Places for lights around the viewer, as a photographer says them: how far off the line of sight, and at which hour
-//! of a clock face.
+//! Light directions relative to the viewer, in a photographer's terms: the angle off the line of sight, and the hour
+//! on a clock face.
 
 use glam::DVec3;
 
-/// Where a light stands, as seen from the eye.
+/// Direction of a light relative to the camera, in polar angles about the line of sight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LightPlace {
-    /// Degrees between the line of sight and the way to the light: 0 is at the eye, 90 in the plane of the picture.
+    /// Angle in degrees between the line of sight and the direction to the light: 0 is at the camera, 90 in the image
+    /// plane.
     pub aside_deg: f64,
-    /// Degrees from straight up, clockwise as seen: -90 is on the left.
+    /// Angle in degrees from straight up, clockwise as seen by the viewer: −90 is on the left.
     pub round_deg: f64,
 }
 
 impl LightPlace {
-    /// Where the key of a rig stands: 54° off the line of sight, and more to the side than up. Of places between 20° and
-    /// 70°, those about 55° have one and a half to two times the shadows of 40° in pictures that are as rich in tones and
-    /// no blacker; and shape is read best from light 20° to 30° above the eye, a little to the left (O'Shea, Agrawala &
-    /// Banks 2010): here 50° left and 25° up.
+    /// Direction of the key light in lighting rigs: 54° off the line of sight, and more to the side than up. Of
+    /// directions between 20° and 70°, those about 55° have one and a half to two times the shadows of 40° in images
+    /// that are as rich in tones and no blacker; and shape is read best from light 20° to 30° above the camera, a
+    /// little to the left (O'Shea, Agrawala & Banks 2010): here 50° left and 25° up.
     pub const USUAL: Self = Self { aside_deg: 54.368_957_6, round_deg: -58.670_230_1 };
 
-    /// Twelve places in the upper half, at four hours and three distances from the line of sight: from where shadows
-    /// begin to show to where they cover half of a ball. Three of four are on the left, where people expect light.
+    /// Returns the twelve candidates of the light search, in the upper half: four clock angles at three angles off
+    /// the line of sight, from where shadows begin to show to where they cover half of a ball. Three of four are on
+    /// the left, where people expect light.
     pub fn to_try() -> Vec<Self> {
-        // Ten to two, but for noon, which hides its shadows below what casts them; and half past nine.
+        // Clock angles of 9:30, 10:30, 11:30 and 1:30; noon is left out, because the object hides the shadows below
+        // itself.
         let hours = [-75.0, -45.0, -15.0, 45.0];
         let aside = [35.0, 50.0, 65.0];
         hours.into_iter().flat_map(|round_deg| aside.map(|aside_deg| Self { aside_deg, round_deg })).collect()
     }
 
-    /// The way there: right, up and towards the eye, of length 1.
+    /// Returns the unit vector towards the light in view axes: right, up and towards the camera.
     pub fn in_view(self) -> DVec3 {
         let (aside, along) = self.aside_deg.to_radians().sin_cos();
         let (right, up) = self.round_deg.to_radians().sin_cos();
         DVec3::new(aside * right, aside * up, along)
     }
 
-    /// Whether it is on the right, where the fill of a rig stands otherwise.
+    /// Returns true if the light is on the right, where a rig's fill light stands otherwise.
     pub fn is_right(self) -> bool {
         self.in_view().x > 0.0
     }

@@ -1,7 +1,8 @@
-//! What the user decides: one [`Settings`] value that is the whole look of a picture.
+//! Look of an image: one [`Settings`] value, with its presets, session records, transfer functions and automatic
+//! first look.
 //!
-//! Undo, sessions, presets, screenshots and the command line all use this one value; what must be
-//! recomputed after a change follows from comparing two of them (`crate::plan`).
+//! Undo, sessions, presets, screenshots and the command line all use this one value; what must be recomputed after a
+//! change follows from comparing two of them (`crate::plan`).
 
 pub mod auto;
 mod exchange;

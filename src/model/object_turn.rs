@@ -1,41 +1,42 @@
-//! Standing the object up and laying it down: by quarter turns of all that is around it. The data stay
-//! where they are.
+//! Object orientation: standing the object up or laying it down by rotating camera and lights in quarter turns. The
+//! data are not resampled or moved.
 
 use glam::{DMat3, DVec3};
 
 use super::{Camera, LightLock, SceneAxis, Settings};
 
-/// How the object is to turn, as its viewer sees it.
+/// Rotation of the object, as the viewer perceives it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ObjectTurn {
-    /// A quarter about the horizontal across the picture, its top away from the viewer: what stood lies on its back.
+    /// Quarter turn about the horizontal axis across the image, top away from the viewer: what stood lies on its
+    /// back.
     Over,
-    /// Until an axis of the scene points up.
+    /// Rotation that makes the given scene axis point up.
     Upright(SceneAxis),
 }
 
-/// How everything around the object turns when that turns: the other way, by quarters about axes of the scene.
+/// Rotation of camera and lights, opposite to the object's apparent rotation: whole quarter turns about scene axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RoomTurn(DMat3);
 
-/// A rotation by a quarter about an axis of the scene.
+/// Returns the rotation by a quarter turn about a scene axis.
 fn quarter(axis: SceneAxis) -> DMat3 {
     rounded(DMat3::from_axis_angle(axis.direction(), std::f64::consts::FRAC_PI_2))
 }
 
-/// A matrix of whole numbers, without what rounding has left.
+/// Rounds a matrix's elements to integers, which removes rounding errors from quarter turns.
 fn rounded(matrix: DMat3) -> DMat3 {
     DMat3::from_cols(matrix.x_axis.round(), matrix.y_axis.round(), matrix.z_axis.round())
 }
 
 impl Camera {
-    /// The axis of the scene that runs most to the right, of those that are level.
+    /// Returns the horizontal scene axis that is nearest to the camera's right.
     fn level_right(&self) -> SceneAxis {
         let right = self.scene_from_view().x_axis;
         SceneAxis::nearest(right.reject_from(self.up.direction()))
     }
 
-    /// How everything around the object turns when that turns as this camera's viewer has asked for.
+    /// Returns the rotation of camera and lights that makes the object appear to turn as requested from this camera.
     pub fn room_turn(&self, turn: ObjectTurn) -> RoomTurn {
         RoomTurn(match turn {
             ObjectTurn::Over => quarter(self.level_right()),
@@ -54,11 +55,11 @@ impl Camera {
         })
     }
 
-    /// Turns with everything around the object.
+    /// Rotates the camera together with the lights.
     fn turn_with(&mut self, room: DMat3) {
         let upright = room * self.up.scene_from_upright();
         self.up = SceneAxis::nearest(upright.z_axis);
-        // What is left of the turn is one about the vertical.
+        // The remaining rotation is one about the vertical axis.
         let about_up = self.up.scene_from_upright().transpose() * upright;
         let angle_deg = about_up.x_axis.y.atan2(about_up.x_axis.x).to_degrees().round();
         self.azimuth_deg = (self.azimuth_deg + angle_deg).rem_euclid(360.0);
@@ -66,11 +67,10 @@ impl Camera {
 }
 
 impl Settings {
-    /// Turns camera and lights, which see and light the object as if it had been turned the other way about the point
-    /// in the middle of the picture. Cuts stay with the data, and the floor at its distance from the middle of the
-    /// scene.
+    /// Rotates camera and lights, so that the object appears to turn the other way about the camera's target.
+    /// Clipping stays with the data, and the floor keeps its distance from the centre of the scene.
     pub fn turn_room(&mut self, RoomTurn(room): RoomTurn) {
-        // Angles are brought into a range of their own, which would be a change.
+        // Angles would be normalised to their ranges, which would count as a change.
         if room == DMat3::IDENTITY {
             return;
         }
@@ -80,7 +80,7 @@ impl Settings {
         }
     }
 
-    /// Turns the object, as it seems: everything around it turns the other way.
+    /// Turns the object as the viewer perceives it, by rotating camera and lights the opposite way.
     pub fn turn_object(&mut self, turn: ObjectTurn) {
         self.turn_room(self.camera.room_turn(turn));
     }
@@ -100,7 +100,7 @@ mod tests {
         })
     }
 
-    /// Where the lights are as the eye sees it.
+    /// Returns the light positions in view axes.
     fn seen(settings: &Settings) -> Vec<DVec3> {
         let view_from_scene = settings.camera.scene_from_view().transpose();
         let place = |light: &crate::model::Light| DVec3::from(light.in_scene(&settings.camera).position);
@@ -116,12 +116,12 @@ mod tests {
                 assert!((a - b).length() < 1e-9, "the light comes from where it came from");
             }
             assert_eq!(after.camera.elevation_deg, before.camera.elevation_deg);
-            // Level with the eye and without a roll, so that the vertical is the picture's.
+            // Elevation and roll of zero, so that the scene's vertical is the image's.
             let level = |camera: &Camera| {
                 let camera = Camera { elevation_deg: 0.0, roll_deg: 0.0, ..camera.clone() };
                 camera.scene_from_view()
             };
-            // A point of the object, in both views.
+            // One point of the object, in both views.
             let top = before.camera.up.direction();
             let seen_before = level(&before.camera).transpose() * top;
             let seen_after = level(&after.camera).transpose() * top;
@@ -172,7 +172,7 @@ mod tests {
                 after.camera.projection = projection;
                 let old = after.camera.clone();
                 after.turn_object(ObjectTurn::Over);
-                // A quarter about the axis that ran most to the right.
+                // Quarter turn about the axis that was nearest to the right.
                 let turned = |point: DVec3| quarter(old.level_right()).transpose() * point;
                 for point in [DVec3::new(0.3, -0.2, 0.5), DVec3::new(-0.6, 0.1, 0.2)] {
                     let found = after.camera.pixel_from_scene(point, 300.0, 200.0).unwrap();

@@ -1,35 +1,35 @@
-//! Lights that are known to work together, placed around the viewer.
+//! Lighting rigs: sets of lights that are known to work together, placed relative to the camera.
 
 use glam::DVec3;
 
 use super::{Camera, Light, LightLock, LightPlace};
 
-/// Distance of the lights from the middle of the volume: outside its half diagonal of at most √3.
+/// Distance of the lights from the centre of the volume, in scene units: outside its half diagonal of at most √3.
 const DISTANCE: f64 = 3.0;
 
-/// How bright the fill is beside the key: with 0.18, shadows darkened a fifth less of what is seen (of thirteen volumes, by
-/// 30 % or more), and nothing was nearly black with either.
+/// Intensity of the fill light relative to a key of 1: with 0.18, shadows darkened a fifth less of the visible object
+/// (of thirteen volumes, by 30 % or more), and nothing was nearly black with either.
 const FILL: f64 = 0.10;
 
-/// A set of lights.
+/// Named arrangement of lights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rig {
-    /// A warm key to the upper left, and a cool fill that casts no shadow: what a volume is opened with.
+    /// Warm key light from the upper left, and a cool fill light without shadows: the lights of a first look.
     KeyAndFill,
-    /// Key, fill and a light from behind that draws the outline: the portrait photographer's three.
+    /// Key, fill and a back light that draws the outline: the portrait photographer's three-point lighting.
     KeyFillBack,
-    /// One hard light from far to the side: relief.
+    /// One hard light from far to the side, which brings out relief.
     ThreeQuarter,
-    /// Two lights from behind: edges shine, the front stays dark.
+    /// Two lights from behind: bright edges and a dark front.
     Rim,
-    /// The sun at noon.
+    /// Sunlight from straight above, as at noon.
     FromAbove,
-    /// A lamp at the eye, which turns with it: everything seen is lit, shadows hide.
+    /// Light at the camera that moves with it: all visible surfaces are lit, and shadows are hidden.
     Headlight,
 }
 
 impl Rig {
-    /// All of them, in the order of menus.
+    /// All rigs in the order of menus.
     pub const ALL: [Self; 6] = [
         Self::KeyAndFill,
         Self::KeyFillBack,
@@ -39,7 +39,7 @@ impl Rig {
         Self::Headlight,
     ];
 
-    /// What menus call it.
+    /// Returns the rig's name in menus.
     pub fn name(self) -> &'static str {
         match self {
             Self::KeyAndFill => "Key and fill",
@@ -51,10 +51,10 @@ impl Rig {
         }
     }
 
-    /// The lights of the rig, as seen from a camera. All but the headlight then keep their places in the scene.
+    /// Returns the rig's lights for a camera. All but the headlight then keep their positions in the scene.
     pub fn lights(self, camera: &Camera) -> Vec<Light> {
         let view = camera.scene_from_view();
-        // Right, up and towards the eye.
+        // Coordinates are right, up and towards the camera.
         let at = |place: [f64; 3]| (view * (DVec3::from(place).normalize_or(DVec3::Z) * DISTANCE)).into();
         let [key, fill] = key_and_fill(camera, LightPlace::USUAL);
         let named = |name: &str, position, intensity| Light {
@@ -77,7 +77,7 @@ impl Rig {
                 Light { color: [0.8, 0.88, 1.0], ..named("Rim right", at([0.85, 0.2, -0.6]), 0.8) },
                 Light { intensity: 0.1, ..fill },
             ],
-            // Straight down, whatever the view; a little towards the viewer, so that fronts are not black.
+            // Straight down, regardless of the view; a little towards the viewer, so that fronts are not black.
             Self::FromAbove => {
                 let up = camera.up.direction();
                 let towards = view.z_axis.reject_from(up).normalize_or(DVec3::ZERO);
@@ -91,7 +91,7 @@ impl Rig {
     }
 }
 
-/// A warm key from a place of one's own, and the cool fill on the other side of the viewer.
+/// Returns a warm key light from the given direction, and the cool fill light on the other side of the viewer.
 pub fn key_and_fill(camera: &Camera, place: LightPlace) -> [Light; 2] {
     let view = camera.scene_from_view();
     let at = |way: DVec3| (view * (way.normalize_or(DVec3::Z) * DISTANCE)).into();

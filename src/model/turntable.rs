@@ -1,12 +1,12 @@
-//! One turn of the camera or of a light, for pictures that move.
+//! Turntable animation: a full rotation of the camera, or of one light, around the vertical axis.
 
 use glam::{DQuat, DVec3};
 
 use super::Settings;
 
 impl Settings {
-    /// The look after a share of a turn, from 0 to 1: of a light of these settings about the vertical axis, or of
-    /// the camera. A light that is not there does not turn.
+    /// Returns the look after a share of a full turn, 0 … 1, of the light with the given index about the vertical
+    /// axis, or of the camera if there is none. An index without a light changes nothing.
     #[must_use]
     pub fn turned(&self, light: Option<usize>, share: f64) -> Self {
         let mut turned = self.clone();

@@ -1,36 +1,37 @@
-//! Looks to compare with: the same scene and camera, with something else between them; or the same from elsewhere.
+//! Comparison variants: the current look with one thing changed, such as the shadow algorithm, another look or
+//! another camera.
 
 use crate::model::{Camera, Engine, ObjectTurn, Settings, ShadowAlgorithm};
 
-/// How a look differs from the current one.
+/// Difference of a compared look from the current one.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Variant {
-    /// Not at all.
+    /// Unchanged, for reference.
     Current,
-    /// Light reaches everything.
+    /// Without shadows: light is not attenuated.
     Off,
-    /// Shadows from a splatted light volume.
+    /// Shadows from a light volume filled by splatting.
     Splat,
-    /// Shadows from a light volume filled by rays.
+    /// Shadows from a light volume filled by ray casting.
     Raycast,
-    /// Shadows by rays from every sample.
+    /// Shadows by a ray to the light from every sample.
     Direct,
-    /// Voxels are scattered instead of gathered.
+    /// Scattering engine instead of the gathering one.
     Scatter,
-    /// Voxels take the light of the first sheet that touches them.
+    /// First touch: voxels take the light of the first sheet that touches them.
     FirstTouch,
-    /// Another look altogether, under the current camera.
+    /// Another complete look, with the current camera.
     Look(Box<Settings>),
-    /// The current look from elsewhere.
+    /// Current look, seen with another camera.
     View(Box<Camera>),
 }
 
 impl Variant {
-    /// All that need nothing else.
+    /// Variants that carry no data.
     pub const PLAIN: [Self; 7] =
         [Self::Current, Self::Off, Self::Splat, Self::Raycast, Self::Direct, Self::Scatter, Self::FirstTouch];
 
-    /// What the command line calls it.
+    /// Returns the variant's name on the command line.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Current => "current",
@@ -45,7 +46,7 @@ impl Variant {
         }
     }
 
-    /// The settings to be shown in place of the current ones.
+    /// Returns the settings to render in place of the current ones.
     #[must_use]
     pub fn of(&self, current: &Settings) -> Settings {
         let mut settings = current.clone();
@@ -69,12 +70,13 @@ impl Variant {
             Self::Look(look) => {
                 settings = Settings::clone(look);
                 if look.camera.up != current.camera.up {
-                    // Lights stay with the viewer of an object that stands otherwise, and the floor is under that.
+                    // The lights stay with the viewer when the object's orientation differs, and the floor stays
+                    // below the object.
                     settings.turn_object(ObjectTurn::Upright(current.camera.up));
                     settings.floor.height = current.floor.height;
                 }
                 settings.camera.clone_from(&current.camera);
-                // It is of the same file.
+                // Corrections belong to the file, which is the same.
                 settings.volume = current.volume;
             }
             Self::View(camera) => {
@@ -89,8 +91,8 @@ impl Variant {
 }
 
 impl Settings {
-    /// A look that was kept, in the place of this one, under the same camera: what is kept stays, and so does what belongs
-    /// to the file.
+    /// Returns a saved look in place of this one, with the current camera; the saved entries and the file's
+    /// corrections stay.
     #[must_use]
     pub fn with_look(&self, look: &Self) -> Self {
         let under = Variant::Look(Box::new(look.clone())).of(self);
@@ -125,7 +127,7 @@ mod tests {
         let elsewhere = Camera { azimuth_deg: 123.0, distance: 2.5, ..current.camera.clone() };
         let shown = Variant::View(Box::new(elsewhere.clone())).of(&current);
         assert_eq!(shown, Settings { camera: elsewhere.clone(), ..current.clone() });
-        // Of an object that stands otherwise: light comes from where the viewer had it.
+        // With another axis up, light comes from where the viewer had it.
         let lying = Camera { up: SceneAxis::MinusX, ..elsewhere };
         let shown = Variant::View(Box::new(lying.clone())).of(&current);
         assert!(shown.camera == lying && shown.lights != current.lights);
@@ -136,7 +138,7 @@ mod tests {
         let mut current = Settings::default();
         current.camera.azimuth_deg = 77.0;
         let mut looks: Vec<Settings> = Variant::PLAIN.iter().map(|variant| variant.of(&current)).collect();
-        // The default look is a splatted one.
+        // The default look uses splatting.
         assert_eq!(looks[2], looks[0]);
         looks.remove(2);
         let mut other = Settings::default();

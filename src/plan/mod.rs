@@ -1,7 +1,7 @@
-//! What a picture needs: the keys of its products, and the geometry of its passes. Pure functions only.
+//! Frame planning: the keys of a picture's products, and the geometry of its passes. Pure functions only.
 //!
-//! [`FrameKeys`] says what each product is made from; the renderer keeps each with its key and makes anew what
-//! has another. `geometry` lays out sheets, bricks and cells. [`probe()`] asks what is under a pixel.
+//! [`FrameKeys`] are the inputs of each product; the renderer caches products with their keys, and recomputes those
+//! whose key differs. `geometry` lays out sheets, bricks and cells. [`probe()`] finds what is under a pixel.
 
 mod geometry;
 mod keys;

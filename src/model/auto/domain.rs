@@ -1,4 +1,5 @@
-//! What field a volume comes from, as far as it decides about colours: from what its file says, and from the values.
+//! Detection of a volume's domain (CT, MR, microscopy, simulation …) from its file's hints and its values, to choose
+//! colours.
 
 use std::ops::Range;
 
@@ -7,24 +8,24 @@ use rayon::prelude::*;
 use crate::data::load::Dimension;
 use crate::data::{DataKind, Meaning, Modality, Volume};
 
-/// What is shown.
+/// Domain of a volume, which decides its palette.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Domain {
-    /// Nothing is known.
+    /// Unknown origin of the data.
     Unknown,
-    /// Flesh, in CT.
+    /// Soft tissue in CT.
     SoftTissue,
-    /// Bone and what is as dense.
+    /// Bone in CT, and material as dense.
     Bone,
-    /// Tissue in magnetic resonance.
+    /// Tissue in magnetic resonance imaging.
     MagneticResonance,
-    /// Machines and other things in industrial CT.
+    /// Machines and other objects in industrial CT.
     Metal,
-    /// Light microscopy.
+    /// Fluorescence and other light microscopy.
     Fluorescence,
-    /// Densities of molecules, and electron microscopy.
+    /// Molecular densities and electron microscopy.
     Molecule,
-    /// What was computed, or varies as smoothly.
+    /// Simulations, and fields as smooth.
     Simulation,
 }
 
@@ -41,8 +42,8 @@ impl Domain {
         Self::Simulation,
     ];
 
-    /// The field of a volume that is one of several channels of a file: that of the file, of which the values of a channel
-    /// say nothing. `None` where a file holds no channels.
+    /// Returns the domain of a volume that is one of several channels of a file: that of the file, because a single
+    /// channel's values do not determine it. `None` if the file has no channels.
     pub(super) fn of_channels(volume: &Volume) -> Option<Self> {
         volume.held().of(Dimension::Channel)?;
         let is_finer_than_light =
@@ -55,7 +56,7 @@ impl Domain {
         })
     }
 
-    /// The field of a volume whose object begins at a density.
+    /// Returns the domain of a volume whose object begins at a density.
     pub(super) fn of(volume: &Volume, start: f64) -> Self {
         if let Some(said) = Self::of_channels(volume).or_else(|| Self::of_hints(volume)) {
             return said;
@@ -63,7 +64,7 @@ impl Domain {
         if is_hounsfield(volume) {
             Self::SoftTissue
         } else if volume.is_anatomical() {
-            // Of scans of patients without Hounsfield units most are these.
+            // Most patient scans without Hounsfield units are MR.
             Self::MagneticResonance
         } else if is_computed(volume, start) {
             Self::Simulation
@@ -72,7 +73,7 @@ impl Domain {
         }
     }
 
-    /// The field that the file names.
+    /// Returns the domain according to the file's hints.
     fn of_hints(volume: &Volume) -> Option<Self> {
         let hints = volume.hints();
         if hints.meaning == Meaning::PositiveDensity {
@@ -90,30 +91,30 @@ impl Domain {
     }
 }
 
-/// Millimetres of a nanometre: no microscope that uses light has voxels as small.
+/// One nanometre in millimetres: no light microscope has voxels as small.
 const NANOMETRE: f64 = 1e-6;
 
 fn is_hounsfield(volume: &Volume) -> bool {
     matches!(volume.kind().kind, DataKind::HounsfieldCt { .. })
 }
 
-/// Where in an object a volume varies, and how.
+/// Texture statistics of a volume over a range of densities.
 #[derive(Debug, Clone, Copy)]
 struct Texture {
-    /// How a volume bends, against how it slopes, between a voxel and its neighbours on both sides: √3 in white noise,
-    /// about 1 where things end, nearly nothing in smooth fields.
+    /// Ratio of second to first differences between a voxel and its neighbours on both sides: √3 in white noise,
+    /// about 1 at boundaries, nearly 0 in smooth fields.
     roughness: f64,
-    /// The share of the voxels where it slopes by less than a fifth of the mean: the inside of things of one material.
+    /// Share of voxels whose slope is less than a fifth of the mean: the interior of homogeneous objects.
     flat_share: f64,
 }
 
-/// Roughness and flatness below which fields are computed ones, within the object and on the way to it. Of 27 volumes
-/// that are neither labels nor signed, four simulations and a cloud have 0.38 and 0.10 at most. Scans are rougher, flatter
-/// inside, or (where things are thin and blurred) flatter around them.
+/// Largest roughness and flatness of a computed field, both in the object and in the densities below it. Of 27
+/// volumes that are neither labels nor signed, four simulations and a cloud have 0.38 and 0.10 at most. Scans are
+/// rougher, flatter inside, or (with thin, blurred objects) flatter around them.
 const MOST_ROUGH: f64 = 0.45;
 const MOST_FLAT: f64 = 0.12;
 
-/// Whether a volume varies smoothly everywhere.
+/// Returns true if a volume varies smoothly everywhere, as simulations do.
 fn is_computed(volume: &Volume, start: f64) -> bool {
     let is_smooth = |densities| {
         let texture = Texture::of(volume, densities);
@@ -122,16 +123,16 @@ fn is_computed(volume: &Volume, start: f64) -> bool {
     is_smooth(start..f64::INFINITY) && is_smooth(start / 4.0..start)
 }
 
-/// How rough a volume is everywhere: √3 in white noise, nearly nothing in smooth fields.
+/// Returns the roughness of the whole volume: √3 in white noise, nearly 0 in smooth fields.
 pub(super) fn roughness(volume: &Volume) -> f64 {
     Texture::of(volume, f64::NEG_INFINITY..f64::INFINITY).roughness
 }
 
-/// Voxels that are looked at: of larger volumes, one in so many along each axis.
+/// Number of voxels to sample: larger volumes are subsampled along each axis.
 const LOOKED_AT: f64 = (1u64 << 20) as f64;
 
 impl Texture {
-    /// Of the voxels with some densities, between neighbours that hold something.
+    /// Measures the voxels in a range of densities, at places whose neighbours are not missing.
     fn of(volume: &Volume, densities: Range<f64>) -> Self {
         let [nx, ny, nz] = volume.dims();
         let step = (volume.voxel_count() as f64 / LOOKED_AT).cbrt().ceil().max(1.0) as usize;
@@ -174,7 +175,7 @@ mod tests {
 
     const N: usize = 24;
 
-    /// Channels of one thing: a smooth hill, a ball with a grain, and a dark ball in bright surroundings.
+    /// Three channels of one object: a smooth hill, a ball with a grain, and a dark ball on a bright background.
     fn value(channel: usize, voxel: usize) -> u8 {
         let away = [voxel % N, voxel / N % N, voxel / N / N].map(|place| place as f64 - 11.5);
         let radius = away.iter().map(|c| c * c).sum::<f64>().sqrt();
@@ -199,10 +200,10 @@ mod tests {
         }
     }
 
-    /// A channel of a file of three, or of one that holds it alone.
+    /// Returns a channel of a file with three channels, or of one that holds it alone.
     fn channel(at: usize, is_alone: bool) -> Volume {
         let channels = if is_alone { at..at + 1 } else { 0..3 };
-        // Two times, so that the channels are an axis of their own.
+        // Two time steps, so that the channels are an axis of their own.
         let shape = if is_alone { format!("({N}, {N}, {N})") } else { format!("(2, 3, {N}, {N}, {N})") };
         let header = format!("{{'descr': '|u1', 'fortran_order': False, 'shape': {shape}, }}\n");
         let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
@@ -221,14 +222,14 @@ mod tests {
     }
 
     fn function(volume: &Volume) -> TransferFunction {
-        // What kind of data a channel is taken for is another matter.
+        // The detected kind of data of a channel is tested elsewhere.
         let kind = if volume.value(0, 0, 0) > 100.0 { KindName::DarkOnBright } else { KindName::Scalar };
         transfer_as(volume, &Histogram::of(volume), Some(kind))
     }
 
     #[test]
     fn channels_of_a_file_have_the_colors_of_one_field() {
-        // The darkest colour of a function: where the object begins.
+        // Darkest colour of a function, at the beginning of the object.
         let beginning = |at, is_alone| {
             let points = function(&channel(at, is_alone)).points;
             let lightness = |color: &[f32; 3]| color.iter().sum::<f32>();

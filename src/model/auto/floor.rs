@@ -1,4 +1,5 @@
-//! Whether a floor helps: shadows make a picture worth looking at, and some objects cast none on themselves.
+//! Floor of the first look: decides whether it helps, and its colour. Shadows improve an image, and some objects cast
+//! none on themselves.
 
 use glam::DVec3;
 
@@ -9,31 +10,31 @@ use crate::model::Settings;
 /// Share of the object in shadow below which its own shadows hardly show.
 const HARDLY_SHADOWED: f64 = 0.04;
 
-/// Compactness from which an object is one: a ball of twenty cells has 0.93, a wall of one cell 0.5, haze less.
+/// Compactness from which a shape counts as an object: a ball of twenty cells has 0.93, a wall of one cell 0.5, haze
+/// less.
 const COMPACT: f64 = 0.7;
 
-/// Degrees from which an eye looks down onto a floor, and not along it.
+/// Camera elevation in degrees from which the floor is seen from above, and not edge-on.
 const LOOKING_DOWN_DEG: f64 = 8.0;
 
-/// How bright a floor under full light is shown in a first look, as a share of white in sRGB: as much as material, and
+/// Displayed brightness of a fully lit floor in a first look, as a share of white in sRGB: as bright as material, and
 /// dark enough that the eye stays with that.
 const GREY: f64 = 0.36;
 
-/// Greys that a floor may have. A darker one would show no shadow (a tenth of sRGB is a hundredth of the light), and none
-/// is lighter than the floor of settings that nobody has touched.
+/// Range of the floor's grey. A darker one would show no shadow (a tenth of sRGB is a hundredth of the light), and
+/// none is lighter than the default floor.
 const GREYS: [f64; 2] = [0.1, 0.6];
 
-/// The colour of a floor under what a look shows: however long the picture is exposed, the floor is no brighter than what
-/// stands on it.
+/// Returns the floor colour for an exposure: the floor is never brighter than the object on it.
 pub fn floor_color(exposure: f64) -> [f32; 3] {
     [(GREY / exposure).clamp(GREYS[0], GREYS[1]) as f32; 3]
 }
 
-/// Whether the first look has a floor.
+/// Returns true if the first look has a floor.
 ///
-/// Under what stands on something, and under what is compact and has hardly a shadow itself (`shadowed`: its share). Not
-/// under what goes on where the data end, as heads do below the neck: that would
-/// stand on its cut; nor under nothing.
+/// Objects that stand on a broad base have one, and compact objects with hardly a shadow on themselves (`shadowed`:
+/// its share). Objects that the volume's boundary cuts off below have none, as heads at the neck, which would stand
+/// on the cut; nor does an empty view.
 pub fn wants_floor(settings: &Settings, volume: &Volume, shadowed: f64) -> bool {
     if settings.camera.elevation_deg < LOOKING_DOWN_DEG || volume.is_anatomical() {
         return false;
@@ -45,40 +46,40 @@ pub fn wants_floor(settings: &Settings, volume: &Volume, shadowed: f64) -> bool 
     match Base::of(&object, volume, settings.camera.up.direction()) {
         Base::Cut => false,
         Base::Narrow => shadowed < HARDLY_SHADOWED,
-        // What stands is one thing: pieces would fall apart.
+        // Only a single object stands: pieces would fall apart.
         Base::Broad => shadowed < HARDLY_SHADOWED || object.largest_part() > ONE_THING,
     }
 }
 
-/// Share of an object that its largest part is if it is one thing, with some noise.
+/// Share of the object in its largest part from which it counts as a single object; the rest is noise.
 const ONE_THING: f64 = 0.9;
 
-/// The lowest part of an object: this share of its height.
+/// Height of the lowest part of an object, as a share of its height.
 const LOWEST: f64 = 0.03;
 
-/// An object stands if its lowest part is as wide as this share of it, both ways: the legs of a chair, not the cap of a
-/// ball, which has a third, and a half of twenty cells.
+/// Width of an object's lowest part from which it stands, as a share of the object's width in both directions: the
+/// legs of a chair, not the cap of a ball, which has a third, and a half of twenty cells.
 const BASE: f64 = 0.6;
 
-/// Share of an object's lowest part that lies on the volume's face if the data end there and the object does not.
+/// Share of an object's lowest part on the volume's face from which the object is cut off there.
 const CUT: f64 = 0.3;
 
-/// What of an object is at its lower end.
+/// Shape of an object's lower end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Base {
-    /// It goes on below, where there are no data.
+    /// Cut off by the boundary of the data.
     Cut,
-    /// It would fall over, or roll.
+    /// Too narrow to stand: it would fall over, or roll.
     Narrow,
-    /// It stands.
+    /// Broad enough to stand on.
     Broad,
 }
 
 impl Base {
-    /// Of an object in a volume; `up` is in scene space.
+    /// Determines the base of an object in a volume; `up` is in scene space.
     fn of(object: &Object, volume: &Volume, up: DVec3) -> Self {
         let scene_from_index = volume.scene().scene_from_index;
-        // Towards the face of the volume that is below, in index space.
+        // Direction to the lower face of the volume, in index space.
         let index_up = scene_from_index.inverse().transform_vector3(up);
         let axis = if index_up.x.abs() > index_up.y.abs().max(index_up.z.abs()) {
             0
@@ -112,7 +113,7 @@ impl Base {
     }
 }
 
-/// The corners of the box around some points.
+/// Returns the corners of the bounding box of points.
 fn box_around(points: impl Iterator<Item = DVec3>) -> [DVec3; 2] {
     points.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)])
 }
@@ -126,7 +127,7 @@ mod tests {
 
     const N: usize = 40;
 
-    /// Looks down onto what is above 100.
+    /// Returns settings that show values above 100, seen from above.
     fn look() -> Settings {
         let mut settings = shows_what_is_bright();
         settings.camera.elevation_deg = 25.0;
@@ -174,7 +175,7 @@ mod tests {
 
     #[test]
     fn what_goes_on_below_does_not() {
-        // A bust whose neck the data cut off.
+        // A bust whose neck is cut off by the boundary.
         let bust = |p: DVec3| {
             (p - DVec3::new(0.0, 0.0, 4.0)).length() < 12.0 || p.z < 0.0 && p.truncate().length() < 9.0
         };

@@ -1,43 +1,44 @@
-//! What the isosurfaces of a volume are like, all of them in one pass: how large, how distinct, and how much of what
-//! they enclose ends at the volume's own box.
+//! Isosurface statistics of a volume, for all isovalues in one pass: area, contrast, and the share of the surface on
+//! the volume's box.
 //!
-//! Pairs of neighbours on either side of a value are the area of its isosurface, and their differences the gradient
-//! there (Pekar, Wiemker & Hempel 2001).
+//! The number of neighbour pairs on either side of a value is the area of its isosurface, and their differences are
+//! the gradient there (Pekar, Wiemker & Hempel 2001).
 
 use rayon::prelude::*;
 
 use crate::data::{HISTOGRAM_BINS, Volume};
 
-/// Voxels that are looked at: of larger volumes, one in so many along each axis.
+/// Number of voxels to sample: larger volumes are subsampled along each axis.
 const LOOKED_AT: f64 = (1u64 << 21) as f64;
 
 /// Largest share of an object's surface that may lie on the volume's box. Of 47 volumes of thirteen domains, those
 /// that were shown as boxes had 0.40 and more, all others at most 0.24.
 const MOST_BLOCKY: f64 = 0.25;
 
-/// What a replacement must be below, well away from the bound, unless one below the bound is so many times better. Of ten
-/// volumes whose best replacement is not below it, those that lose nothing by it have 1.0 to 1.5; those of which crumbs
-/// would be left, 5 and 7.
+/// Stricter upper limit of a replacement's share on the box, well below [`MOST_BLOCKY`], and the factor of merit by
+/// which a replacement between the two limits must exceed the best one below it. Of ten volumes whose best
+/// replacement exceeds the stricter limit, those that lose nothing by it have factors of 1.0 to 1.5; those of which
+/// only crumbs would be left, 5 and 7.
 const HARDLY_BLOCKY: f64 = 0.1;
 const MUCH_BETTER: f64 = 3.0;
 
-/// Share of the volume that an object usually takes, and how far others are from it, in powers of ten.
+/// Usual share of the volume that an object occupies, and its standard deviation in powers of ten.
 const USUAL_SHARE: (f64, f64) = (0.08, 0.9);
 
-/// Figures of the isosurfaces of densities 0, 1/n, 2/n, …
+/// Statistics of the isosurfaces at densities 0, 1/n, 2/n, …
 pub(super) struct Isosurfaces {
-    /// Pairs of neighbours on either side.
+    /// Number of neighbour pairs across the isovalue.
     area: Vec<f64>,
-    /// Sum of the differences of those pairs.
+    /// Sum of the density differences of these pairs.
     contrast: Vec<f64>,
-    /// Voxels of the volume's faces that are above.
+    /// Number of voxels on the volume's faces above the isovalue.
     on_faces: Vec<f64>,
-    /// Voxels that are above.
+    /// Number of voxels above the isovalue.
     inside: Vec<f64>,
     voxels: f64,
 }
 
-/// Counts that change at the bins where something begins or ends.
+/// Difference arrays of area and contrast over density bins, and the histogram of voxels.
 #[derive(Clone)]
 struct Changes {
     area: Vec<f64>,
@@ -59,7 +60,7 @@ impl Changes {
         self
     }
 
-    /// A pair of neighbours that stands for so many.
+    /// Adds a pair of neighbours with a weight.
     fn pair(&mut self, one: f32, other: f32, weight: f64) {
         let (low, high) = (bin(one.min(other)) + 1, bin(one.max(other)) + 1);
         let difference = f64::from((one - other).abs()) * weight;
@@ -74,7 +75,7 @@ fn bin(density: f32) -> usize {
     ((density * HISTOGRAM_BINS as f32) as usize).min(HISTOGRAM_BINS - 1)
 }
 
-/// Sums from the first on.
+/// Returns cumulative sums from the first element.
 fn running(changes: &[f64]) -> Vec<f64> {
     changes
         .iter()
@@ -85,7 +86,7 @@ fn running(changes: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Sums from the last on.
+/// Returns cumulative sums from the last element.
 fn running_down(counts: &[f64]) -> Vec<f64> {
     let mut sums: Vec<f64> = running(&counts.iter().rev().copied().collect::<Vec<_>>());
     sums.reverse();
@@ -93,13 +94,13 @@ fn running_down(counts: &[f64]) -> Vec<f64> {
 }
 
 impl Isosurfaces {
-    /// Looks at a volume. Voxels that hold nothing are on neither side of anything.
+    /// Computes the statistics of a volume. Missing voxels are on neither side.
     pub(super) fn of(volume: &Volume) -> Self {
         let [nx, ny, nz] = volume.dims();
         let voxels = volume.voxel_count() as f64;
         let missing = volume.missing();
         let step = (voxels / LOOKED_AT).cbrt().ceil().max(1.0) as usize;
-        // Each voxel that is looked at stands for a block of them; on a face, for a square.
+        // Each sampled voxel stands for a block; on a face, for a square.
         let (block, square) = ((step * step * step) as f64, (step * step) as f64);
         let changes = (0..nz)
             .step_by(step)
@@ -139,7 +140,7 @@ impl Isosurfaces {
             }
         };
         let at = |n: usize| (0..n).step_by(step);
-        // A slice that is a voxel thick has two faces all the same.
+        // A volume that is one voxel thick has two faces along that axis, too.
         for (x, y) in at(nx).flat_map(|x| at(ny).map(move |y| (x, y))) {
             face([x, y, 0]);
             face([x, y, nz - 1]);
@@ -161,13 +162,14 @@ impl Isosurfaces {
         }
     }
 
-    /// The share of an object's surface that lies on the volume's box.
+    /// Returns the share of an object's surface that lies on the volume's box.
     fn blockness(&self, bin: usize) -> f64 {
         let surface = self.area[bin] + self.on_faces[bin];
         if surface == 0.0 { 0.0 } else { self.on_faces[bin] / surface }
     }
 
-    /// How good a surface of an object that of a density is: distinct, large, compact, of a usual size, and not the box.
+    /// Returns the merit of an isosurface as the surface of an object: distinct, large, compact, of a usual size, and
+    /// not the box.
     fn merit(&self, bin: usize, largest_area: f64) -> f64 {
         if self.area[bin] == 0.0 || self.inside[bin] == 0.0 {
             return 0.0;
@@ -182,8 +184,8 @@ impl Isosurfaces {
             * (-0.5 * unusual * unusual).exp()
     }
 
-    /// The density at which an object begins that would begin at `start`, unless what is shown then is mainly the
-    /// volume's box: there, the best isosurface that is not.
+    /// Returns `start`, the density at which the object begins, unless mainly the volume's box would be shown: then
+    /// that of the best isosurface that is not.
     pub(super) fn unless_blocky(&self, start: f64) -> f64 {
         let bins = HISTOGRAM_BINS;
         let first = ((start * bins as f64) as usize).min(bins - 1);
@@ -193,25 +195,24 @@ impl Isosurfaces {
         self.best().unwrap_or(start)
     }
 
-    /// How much the density changes from voxel to voxel where it is this one: as it does across the boundary that lies
-    /// there. `None` where there is none.
+    /// Returns the mean change of density from voxel to voxel across an isosurface; `None` if it is empty.
     pub(super) fn slope(&self, density: f64) -> Option<f64> {
         let bin = bin(density as f32);
         (self.area[bin] > 0.0).then(|| self.contrast[bin] / self.area[bin])
     }
 
-    /// How much of what is above a density is inside of it: 0 of single voxels, nearly 1 of large pieces.
+    /// Returns the compactness of the region above a density: 0 for single voxels, nearly 1 for large pieces.
     pub(super) fn compactness(&self, density: f64) -> f64 {
         self.compactness_of_bin(bin(density as f32))
     }
 
     fn compactness_of_bin(&self, bin: usize) -> f64 {
-        // A voxel alone has six faces.
+        // A single voxel has six faces.
         let surface = self.area[bin] + self.on_faces[bin];
         if self.inside[bin] == 0.0 { 0.0 } else { 1.0 - (surface / (6.0 * self.inside[bin])).min(1.0) }
     }
 
-    /// The density whose isosurface is the best that is not mainly the volume's box.
+    /// Returns the density of the best isosurface that is not mainly the volume's box.
     pub(super) fn best(&self) -> Option<f64> {
         let bins = HISTOGRAM_BINS;
         let largest = self.area.iter().copied().fold(0.0, f64::max);
@@ -236,7 +237,7 @@ mod tests {
     use super::*;
     use crate::data::Samples;
 
-    /// A ball of 200 in a haze that reaches the faces.
+    /// Returns a ball of 200 in a haze that reaches the faces.
     fn ball_in_haze(haze: u8) -> Volume {
         let n = 40;
         let value = |at: usize| {
@@ -252,7 +253,7 @@ mod tests {
         let volume = ball_in_haze(0);
         let surfaces = Isosurfaces::of(&volume);
         let bin = bin(volume.density_of(100.0) as f32);
-        // Neighbours across a sphere: 6 directions' projections, 6 · π r² of them.
+        // Neighbour pairs across a sphere: the projections along 6 directions, 6 · π r².
         let expected = 6.0 * std::f64::consts::PI * 100.0;
         assert!((surfaces.area[bin] / expected - 1.0).abs() < 0.05, "{}", surfaces.area[bin]);
         let inside = 4.0 / 3.0 * std::f64::consts::PI * 1000.0;
@@ -273,7 +274,8 @@ mod tests {
 
     #[test]
     fn crumbs_do_not_stand_for_what_ends_a_little_at_the_box() {
-        // A ball of which a face cuts a slice off, in a haze that reaches all faces; and crumbs of 2 x 2 x 2 in its middle.
+        // A ball of which a face cuts off a slice, in a haze that reaches all faces; and crumbs of 2 × 2 × 2 in its
+        // centre.
         let n = 40;
         let value = |at: usize| {
             let place = [at % n, at / n % n, at / n / n];

@@ -1,5 +1,4 @@
-//! More than one proposal: whole looks of a volume, each another answer to what it is made of, how it is lit and from
-//! where it is seen.
+//! Look proposals: complete looks of a volume that differ in material, lighting or view.
 
 use glam::DVec3;
 
@@ -11,51 +10,50 @@ use crate::model::{
     Background, Camera, Easing, Light, LightShape, Rig, Settings, Sky, SkyMode, TransferFunction,
 };
 
-/// A look to be tried.
+/// Proposed look with its name and description.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Proposal {
-    /// What menus call it.
+    /// Name of the proposal in menus.
     pub name: &'static str,
-    /// How it differs from the first look.
+    /// Difference from the first look, for a tooltip.
     pub differs: &'static str,
-    /// All of it but its brightness, which is measured.
+    /// Settings of the look; its exposure is measured later.
     pub settings: Settings,
 }
 
-/// What share of what a first look shows its inner structure may be: not a few specks, nor nearly all of it.
+/// Share of the visible voxels that an inner structure may take: not a few specks, nor nearly all.
 const INSIDE: std::ops::RangeInclusive<f64> = 0.01..=0.7;
 
-/// How much of the opacity of what is outside a veil keeps: the eye goes through it, and sees that it is there.
+/// Opacity factor of the outer material when it is a veil: it is translucent, but still visible.
 const VEIL: f64 = 0.06;
 
-/// Opacity below which what is outside is a veil: surfaces that are opaque begin with 0.3, and a veil keeps half of that at
+/// Opacity below which an outer material is a veil: opaque surfaces begin with 0.3, and a veil keeps half of that at
 /// most.
 const THINNEST: f64 = 0.2;
 
-/// How much of its opacity the whole keeps where what lies behind is to show through.
+/// Opacity factor of the translucent look, which lets the material behind show through.
 const TRANSLUCENT: f64 = 0.3;
 
-/// Degrees above the floor from which it is looked down upon.
+/// Camera elevation in degrees of the look from above.
 const FROM_ABOVE_DEG: f64 = 48.0;
 
-/// Degrees to the other side: behind it; of patients, who are seen from their right front, to the left profile.
+/// Rotation in degrees to the other side: behind the object; for patients, from the right front to the left profile.
 const BEHIND_DEG: f64 = 180.0;
 const LEFT_PROFILE_DEG: f64 = 120.0;
 
-/// What a sky gives beside lights where all of it is seen: hollows come out, and the lights still decide.
+/// Sky intensity beside other lights: it brings out hollows, and the lights still dominate.
 const SOFT_SKY: f64 = 0.3;
 
-/// Degrees that a light is wide whose shadows have soft edges: half a metre seen from three and a half.
+/// Angular width in degrees of a light with soft shadows: half a metre seen from three and a half.
 const SOFT_DEG: f64 = 8.0;
 
-/// Fired clay, as modellers use it to judge form by light alone.
+/// Colour of fired clay, with which modellers judge form by light alone.
 const CLAY: [f32; 3] = [0.80, 0.76, 0.72];
 
-/// Looks of a volume, the first one first: eight, another where it has an inner structure, and one more where that is not
-/// within a veil already. The volume need not have
-/// all of its voxels.
+/// Returns eight looks of a volume, the first look first, another if it has an inner structure, and one more if that
+/// is not within a veil already. The volume may be subsampled.
 ///
-/// Those that every volume has come first, so that the same number is the same look of whatever is shown.
+/// Looks that every volume has come first, so that a number selects the same kind of look for all data.
 pub fn looks(first: &Settings, volume: &Volume, histogram: &Histogram) -> Vec<Proposal> {
     let proposal = |name, differs, settings| Proposal { name, differs, settings };
     let mut all = vec![proposal("First look", "as the volume is opened", first.clone())];
@@ -107,8 +105,8 @@ fn sane(mut all: Vec<Proposal>) -> Vec<Proposal> {
     all
 }
 
-/// The value at which what is within a veil begins, of a function that has one: from there on it rises, and all that is
-/// below is hardly opaque.
+/// Returns the value at which the material inside a veil begins, if the function has one: opacity only rises from
+/// there, and everything below is hardly opaque.
 fn veil_end(function: &TransferFunction) -> Option<f64> {
     let points = &function.points;
     let last_clear = points.iter().rposition(|point| point.opacity <= 0.0)?;
@@ -118,15 +116,14 @@ fn veil_end(function: &TransferFunction) -> Option<f64> {
     (rises && above.len() > 1 && most > 0.0 && most < THINNEST).then(|| points[last_clear].value)
 }
 
-/// The settings with the camera as near as what they show of the volume allows, and the lights where they were as seen
-/// from there.
+/// Returns the settings with the camera framed on the visible object, and the lights rotated with the camera.
 fn framed(mut settings: Settings, first: &Settings, volume: &Volume) -> Settings {
     frame(&mut settings, volume);
     settings.lights = carried(&settings.lights, &first.camera, &settings.camera);
     settings
 }
 
-/// Lights that are seen from a camera where they were seen from another.
+/// Rotates lights so that they keep their positions relative to the camera.
 fn carried(lights: &[Light], from: &Camera, to: &Camera) -> Vec<Light> {
     let turn = to.scene_from_view() * from.scene_from_view().transpose();
     let moved = |light: &Light| {
@@ -138,8 +135,8 @@ fn carried(lights: &[Light], from: &Camera, to: &Camera) -> Vec<Light> {
     lights.iter().map(moved).collect()
 }
 
-/// The value from which what a function shows is its inner structure; `None` where values are no densities, of which more
-/// is more opaque, or where there is no more to be shown inside.
+/// Returns the value at which the inner structure begins; `None` if opacity does not rise with value, or if there is
+/// no inner structure.
 fn inner_start(function: &TransferFunction, volume: &Volume, histogram: &Histogram) -> Option<f64> {
     let points = &function.points;
     let is_ramp = points.windows(2).all(|pair| pair[0].opacity <= pair[1].opacity)
@@ -148,7 +145,7 @@ fn inner_start(function: &TransferFunction, volume: &Volume, histogram: &Histogr
     let shown = (0..bins)
         .map(|bin| bin as f64 / bins as f64)
         .find(|&density| function.opacity_at(volume.value_of(density)) > LEAST_SHOWN)?;
-    // What is shown falls into two again.
+    // Otsu's split of the visible part.
     let above = above(histogram, shown);
     let start = otsu(&above);
     let first = (start * bins as f64) as usize;
@@ -156,7 +153,7 @@ fn inner_start(function: &TransferFunction, volume: &Volume, histogram: &Histogr
     (is_ramp && INSIDE.contains(&inside)).then(|| volume.value_of(start))
 }
 
-/// A sky beside the lights, the first of which is as large as a window across a room.
+/// Returns the look with a sky beside the lights, the first of which is as large as a window across a room.
 fn soft(first: &Settings) -> Settings {
     let sky = Sky { mode: SkyMode::Gradient, intensity: SOFT_SKY, ..Sky::default() };
     let mut soft = Settings { sky, ..first.clone() };
@@ -166,7 +163,7 @@ fn soft(first: &Settings) -> Settings {
     soft
 }
 
-/// All in one colour, a little rough, between three lights.
+/// Returns the look in one colour, slightly rough, with three-point lighting.
 fn clay(first: &Settings) -> Settings {
     let mut clay = Settings { lights: Rig::KeyFillBack.lights(&first.camera), ..first.clone() };
     for point in &mut clay.transfer.points {
@@ -237,7 +234,7 @@ mod tests {
         let volume = Volume::with_spacing("core", [n; 3], DVec3::ONE, voxels).unwrap();
         let all = proposals(&volume);
         let of = |name: &str| &all.iter().find(|one| one.name == name).expect("a look").settings;
-        // It is hidden: the first look has a veil around it, a skin that is clear as glass within.
+        // The core is hidden: the first look has a veil around it, a skin that is transparent inside.
         let (inner, first) = (of("Inner structure"), &all[0].settings);
         assert_eq!(inner.transfer.opacity_at(90.0), 0.0);
         assert!(inner.transfer.opacity_at(220.0) > 0.5 && first.transfer.opacity_at(220.0) > 0.5);
@@ -252,7 +249,7 @@ mod tests {
         let volume = ball(200.0, 0.0);
         let histogram = Histogram::of(&volume);
         let mut first = first_settings(&volume, &histogram);
-        // Opaque at both ends, as signed fields are.
+        // Opaque at both ends, as for signed fields.
         let opaque =
             crate::model::ControlPoint::new(first.transfer.points[0].value - 1.0, [0.2, 0.3, 0.9], 0.9);
         first.transfer.points.insert(0, opaque);

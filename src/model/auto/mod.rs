@@ -1,9 +1,9 @@
-//! A first look at a volume that needs no touch: transfer function, camera, floor and lights from its values, and from
-//! what its file says of them.
+//! Automatic first look at a volume: transfer function, camera, floor and lights from its values and its file's
+//! hints.
 //!
-//! The kind of data decides what is shown: every label, both sides of zero, bone. Of other data what is around the
-//! object is recognised by the volume's own border, since most scans have a margin, and opacity begins between that and
-//! the value that best splits the volume in two (Otsu 1979).
+//! The kind of data decides what is shown: every label, both sides of zero, bone. For other data the background is
+//! recognised by the volume's border, because most scans have a margin, and opacity begins between its level and
+//! Otsu's split of the histogram (Otsu 1979).
 
 mod domain;
 mod floor;
@@ -35,29 +35,29 @@ use super::{
 };
 use crate::data::{DataKind, Histogram, KindName, Shown, Volume};
 
-/// Opacity per opacity unit from which something counts as shown: of white in full light, 63 of 255 before black.
+/// Smallest visible opacity per opacity unit: for white in full light, 63 of 255 before black.
 const LEAST_SHOWN: f64 = 0.05;
 
-/// What a first look is to respect that the volume itself does not say.
+/// User preferences for a first look that do not follow from the volume.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Wishes {
-    /// The kind of data that it is shown as; its own where none is named.
+    /// Kind of data to treat the volume as; `None` for the detected kind.
     pub treated_as: Option<KindName>,
-    /// The axis of the scene that points up, unless the file says where the head is.
+    /// Scene axis that points up, unless the file says where the head is.
     pub up: SceneAxis,
 }
 
-/// Settings for a volume that nobody has touched yet.
+/// Returns the settings of a volume's first look.
 pub fn first_settings(volume: &Volume, histogram: &Histogram) -> Settings {
     first_settings_with(volume, histogram, Wishes::default())
 }
 
-/// Settings for a volume that nobody has touched yet, as somebody wishes them to be.
+/// Returns the settings of a volume's first look, with user preferences.
 pub fn first_settings_with(volume: &Volume, histogram: &Histogram, wishes: Wishes) -> Settings {
     with_what_matters(volume, histogram, |volume, histogram| look_of_what_matters(volume, histogram, wishes))
 }
 
-/// Asks something of a volume that shows the values that matter, whatever it shows now, and of its histogram then.
+/// Calls a function with the volume showing its robust range, and the histogram over that range.
 fn with_what_matters<T>(
     volume: &Volume,
     histogram: &Histogram,
@@ -71,7 +71,7 @@ fn with_what_matters<T>(
     ask(&volume, &Histogram::of(&volume))
 }
 
-/// A first look at a volume that shows the values that matter.
+/// Returns the first look at a volume that shows its robust range.
 fn look_of_what_matters(volume: &Volume, histogram: &Histogram, wishes: Wishes) -> Settings {
     let kind = kind_of(volume, wishes.treated_as);
     let found = transfer::find(volume, histogram, kind);
@@ -84,17 +84,17 @@ fn look_of_what_matters(volume: &Volume, histogram: &Histogram, wishes: Wishes) 
         opacity_unit: opacity_unit(volume),
         lights: Vec::new(),
         shading: shading(found.domain),
-        // A look that nobody has made by hand stays as bright as without shadows.
+        // An automatic look stays as bright as without shadows.
         shadows: Shadows { keep_balanced: true, ..Shadows::default() },
         volume: *volume.corrections(),
         ..Settings::default()
     };
     Quality::Standard.apply(&mut settings);
     if let DataKind::LabelMap { .. } = kind {
-        // Between two labels there is none of the numbers between them, and none of them is an outlier.
+        // Numbers between two labels mean nothing, and no label is an outlier.
         settings.range = transfer::range_of_labels(volume);
         settings.sampling.classification = Classification::Pre;
-        // Sharper than the B-spline, which would round off what voxels are.
+        // Sharper than the B-spline, which would round off the shapes of voxels.
         (settings.sampling.kernel, settings.shadows.kernel) = (Kernel::Prefiltered, Kernel::Prefiltered);
     }
     aim(&mut settings, volume);
@@ -102,7 +102,7 @@ fn look_of_what_matters(volume: &Volume, histogram: &Histogram, wishes: Wishes) 
         settings = framed_with_veil(settings, volume);
     }
     match kind {
-        // Every number is shown already; what hides the others is framed, too.
+        // All labels are shown already; a label that hides the others is framed, too.
         DataKind::LabelMap { .. } => {
             let unit = settings.opacity_unit;
             transfer::thin_cover(&mut settings.labels, volume, unit);
@@ -126,7 +126,8 @@ fn look_of_what_matters(volume: &Volume, histogram: &Histogram, wishes: Wishes) 
     }
 }
 
-/// Points camera and lights at what settings show, from the usual view or a better one, wherever the camera was.
+/// Points camera and lights at the visible object, from the default view or a better one, regardless of the previous
+/// camera.
 fn aim(settings: &mut Settings, volume: &Volume) {
     settings.camera = Camera { up: settings.camera.up, ..Camera::default() };
     let object = Object::shown_by(settings, volume);
@@ -135,20 +136,20 @@ fn aim(settings: &mut Settings, volume: &Volume) {
     settings.lights = Rig::KeyAndFill.lights(&settings.camera);
 }
 
-/// Settings that frame a veil as if it were opaque: it is too clear to count as shown.
+/// Frames a veil as if it were opaque; otherwise it is too transparent to count as visible.
 fn framed_with_veil(settings: Settings, volume: &Volume) -> Settings {
     let mut opaque = Settings { transfer: transfer::unveiled(&settings.transfer), ..settings.clone() };
     aim(&mut opaque, volume);
     Settings { transfer: settings.transfer, ..opaque }
 }
 
-/// The length to which opacities of a first look refer.
+/// Returns the opacity unit of a first look.
 fn opacity_unit(volume: &Volume) -> Length {
     volume.unit_mm().map_or_else(|| Length::Voxels(voxels_of_file(volume)), Length::Mm)
 }
 
-/// Stands what settings show of a volume up so that an axis of the scene points up, on the floor and in the light as
-/// they were.
+/// Reorients the object so that a scene axis points up, and frames it again; floor and lights keep their relation to
+/// it.
 pub fn stand(settings: &mut Settings, volume: &Volume, up: SceneAxis) {
     if settings.camera.up != up {
         settings.turn_object(ObjectTurn::Upright(up));
@@ -156,7 +157,7 @@ pub fn stand(settings: &mut Settings, volume: &Volume, up: SceneAxis) {
     }
 }
 
-/// The kind of that name, or what the volume's own is.
+/// Returns the data kind for a name, or the volume's own if it is `None`.
 fn kind_of(volume: &Volume, treated_as: Option<KindName>) -> DataKind {
     let own = volume.kind().kind;
     match treated_as {
@@ -165,12 +166,12 @@ fn kind_of(volume: &Volume, treated_as: Option<KindName>) -> DataKind {
     }
 }
 
-/// Light from everywhere in a first look. With this and the fill of its lights, shadows darken 0.155 of an object's pixels
-/// by 30 % or more (the median of thirteen volumes), and nothing is nearly black; with the usual 0.15, and a fill of 0.18,
-/// it was 0.117.
+/// Ambient coefficient of a first look. With this and the fill of its lights, shadows darken 0.155 of an object's
+/// pixels by 30 % or more (the median of thirteen volumes), and nothing is nearly black; with the default of 0.15,
+/// and a fill of 0.18, it was 0.117.
 const AMBIENT: f64 = 0.10;
 
-/// What surfaces are like: metal shines.
+/// Returns the shading of a domain: metal has strong highlights.
 fn shading(domain: Domain) -> Shading {
     let usual = Shading { ambient: AMBIENT, ..Shading::default() };
     match domain {
@@ -179,39 +180,38 @@ fn shading(domain: Domain) -> Shading {
     }
 }
 
-/// Frames what settings show of a volume from where their camera looks, and puts the floor under it.
+/// Frames the visible object from the camera's current direction, and puts the floor under it.
 pub fn frame(settings: &mut Settings, volume: &Volume) {
     let object = Object::shown_by(settings, volume);
     frame::frame(settings, volume, &object);
 }
 
-/// Puts the floor under what settings show of a volume; it stays where it is if they show nothing.
+/// Puts the floor under the visible object; it is not moved if nothing is visible.
 pub fn lay_floor(settings: &mut Settings, volume: &Volume) {
     let object = Object::shown_by(settings, volume);
     frame::lay_floor(settings, volume, &object);
 }
 
-/// The share of what settings show of a volume's surface that is not where material ends, but where the data do.
+/// Returns the share of the visible object's surface that lies on the volume's box, where the data end.
 pub fn blockness(settings: &Settings, volume: &Volume) -> f64 {
     Object::of_shown(settings, volume).blockness()
 }
 
-/// The edge of a voxel of the file, in voxels: averaged voxels look like those that they stand for.
+/// Returns the edge of the file's voxels in voxels of the volume: averaged voxels look like the original ones.
 fn voxels_of_file(volume: &Volume) -> f64 {
     let count = |dims: [usize; 3]| dims.iter().map(|&n| n as f64).product::<f64>();
     (count(volume.dims()) / count(volume.file_dims())).cbrt()
 }
 
-/// A transfer function that shows the object and hides what is around it, as if the volume held data of a kind; of its own
-/// where none is named.
+/// Returns the transfer function that shows the object and hides the background, for the given kind of data; `None`
+/// for the detected kind.
 pub fn transfer_as(volume: &Volume, histogram: &Histogram, treated_as: Option<KindName>) -> TransferFunction {
     with_what_matters(volume, histogram, |volume, histogram| {
         transfer::find(volume, histogram, kind_of(volume, treated_as)).transfer
     })
 }
 
-/// A table of labels as if the volume held data of that kind; of its own where none is named. Empty of all but label
-/// maps.
+/// Returns the label table for the given kind of data; `None` for the detected kind. Empty for all but label maps.
 pub fn labels_as(volume: &Volume, treated_as: Option<KindName>) -> LabelTable {
     match kind_of(volume, treated_as) {
         DataKind::LabelMap { .. } => {
@@ -223,12 +223,12 @@ pub fn labels_as(volume: &Volume, treated_as: Option<KindName>) -> LabelTable {
     }
 }
 
-/// How many labels of a label map settings do not show, or not in the colour that they give them.
+/// Returns the number of labels that are invisible with the settings, or not in their own colour.
 pub fn labels_lost(settings: &Settings, volume: &Volume) -> usize {
     transfer::lost_labels(settings, volume)
 }
 
-/// What of a histogram lies above a density.
+/// Returns the part of a histogram above a density.
 fn above(histogram: &Histogram, start: f64) -> Histogram {
     let first = ((start * histogram.counts.len() as f64) as usize).min(histogram.counts.len() - 1);
     let counts: Vec<u64> = histogram
@@ -248,7 +248,7 @@ mod tests {
     use crate::model::ControlPoint;
     use glam::DVec3;
 
-    /// Settings that show what is above 100 of 255.
+    /// Returns settings that show values above 100 of 255.
     pub(super) fn shows_what_is_bright() -> Settings {
         let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
         let points = vec![point(100.0, 0.0), point(101.0, 1.0), point(255.0, 1.0)];
@@ -258,7 +258,7 @@ mod tests {
         }
     }
 
-    /// A ball of the given value in a margin of another, with a ripple on both.
+    /// Returns a ball of one value in a margin of another, with a ripple on both.
     pub(super) fn ball(inside: f32, outside: f32) -> Volume {
         let n = 32usize;
         let values = (0..n * n * n)
@@ -280,7 +280,7 @@ mod tests {
         assert!(!settings.floor.on);
     }
 
-    /// A rod along x that lies low in y and high in z.
+    /// Returns a rod along x that lies low in y and high in z.
     fn rod() -> Volume {
         let n = 32usize;
         let value = |at: usize| {
@@ -296,7 +296,7 @@ mod tests {
     fn whatever_is_up_the_object_stands_on_the_floor_and_fills_the_picture() {
         let volume = rod();
         let histogram = Histogram::of(&volume);
-        // Scene units are 16 voxels, from the middle.
+        // Scene units are 16 voxels, from the centre.
         for (up, floor) in [
             (SceneAxis::PlusX, -14.0 / 16.0),
             (SceneAxis::MinusX, -14.0 / 16.0),

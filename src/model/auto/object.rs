@@ -1,5 +1,5 @@
-//! What a transfer function shows of a volume, in cells of a few voxels, without what is not the object: specks, and
-//! tables that it lies on.
+//! Visible object of a volume: an occupancy grid of cells that the transfer function shows, without specks and the
+//! table it lies on.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -9,32 +9,33 @@ use crate::data::{HISTOGRAM_BINS, Volume};
 use crate::math::SceneSpace;
 use crate::model::Settings;
 
-/// Most cells along an axis: single pixels of the views that are compared.
+/// Largest number of cells along an axis: single pixels of the compared views.
 const MOST_CELLS: usize = 128;
 
-/// Share of its voxels that are shown in a cell that is: a line through a cell of four voxels.
+/// Fraction (1/16) of a cell's voxels that must be visible: a line through a cell of four voxels.
 const SHOWN_SHARE: usize = 16;
 
-/// Parts smaller than this share of the largest are specks, unless they lie among or close to the others: within this
-/// share of their box's longest edge. To frame those costs little, and to cut them off would be seen.
+/// Size limit of specks, as a share of the largest part, and the distance within which they are kept, as a share of
+/// the longest edge of the other parts' box. Framing those costs little, and cutting them off would be noticed.
 const SPECK: f64 = 0.01;
 const CLOSE: f64 = 0.1;
 
-/// A table is as long and as wide as this share of the volume, and thinner than that one, at one of its faces.
+/// Table limits as shares of the volume: minimum length and width, and maximum thickness, for a part at one of its
+/// faces.
 const TABLE: (f64, f64) = (0.7, 0.06);
 
-/// Cells of a volume, and whether the object is there.
+/// Occupancy grid: cells of a volume that the object occupies.
 pub(super) struct Object {
-    /// Cells along each axis.
+    /// Number of cells along each axis.
     pub(super) cells: [usize; 3],
-    /// Voxels along the edges of a cell; the last ones may have fewer.
+    /// Number of voxels along the edges of a cell; the last cells may have fewer.
     edge: [usize; 3],
     dims: [usize; 3],
-    /// x fastest.
+    /// Occupied cells, x fastest.
     is_there: Vec<bool>,
 }
 
-/// A connected part.
+/// Connected component of the object, with its bounding box in cells.
 struct Part {
     cells: Vec<usize>,
     low: [usize; 3],
@@ -42,22 +43,22 @@ struct Part {
 }
 
 impl Object {
-    /// What settings show of a volume, but specks and tables; all of it where there is nothing else.
+    /// Returns the object that settings show, without specks and tables; everything visible if nothing else is left.
     pub(super) fn shown_by(settings: &Settings, volume: &Volume) -> Self {
         Self::of_shown(settings, volume).without_accessories()
     }
 
-    /// All that is shown.
+    /// Returns all visible cells, specks and tables included.
     pub(super) fn of_shown(settings: &Settings, volume: &Volume) -> Self {
         let volume = &volume.showing(settings.shown(&volume.ranges()));
         let (settings, range) = (settings.as_drawn(volume), volume.table_range());
         let dims = volume.dims();
         let edge = dims.map(|n| n.div_ceil(MOST_CELLS));
         let cells = [0, 1, 2].map(|axis| dims[axis].div_ceil(edge[axis]));
-        // Whether each of many densities is shown: a look-up per voxel.
+        // Visibility by density bin, so that each voxel needs one look-up.
         let shown: Vec<bool> = (0..=HISTOGRAM_BINS)
             .map(|bin| {
-                // Labels lie at least four bins apart: the one of a density's bin is its own.
+                // Labels lie at least four bins apart, so that no two share a bin.
                 settings.transfer.opacity_at(range.at(bin as f64 / HISTOGRAM_BINS as f64)) > LEAST_SHOWN
             })
             .collect();
@@ -87,14 +88,14 @@ impl Object {
         [cell % self.cells[0], cell / self.cells[0] % self.cells[1], cell / self.cells[0] / self.cells[1]]
     }
 
-    /// Whether the object is in a cell; it is nowhere outside.
+    /// Returns true if the object occupies a cell; false outside the grid.
     pub(super) fn is_at(&self, [x, y, z]: [i64; 3]) -> bool {
         let inside = |n: i64, axis: usize| usize::try_from(n).ok().filter(|&n| n < self.cells[axis]);
         let (Some(x), Some(y), Some(z)) = (inside(x, 0), inside(y, 1), inside(z, 2)) else { return false };
         self.is_there[(z * self.cells[1] + y) * self.cells[0] + x]
     }
 
-    /// Half of the longest edge of a cell, in scene units.
+    /// Returns half the longest edge of a cell, in scene units.
     pub(super) fn half_edge(&self, scene: &SceneSpace) -> f64 {
         let edges = DVec3::AXES
             .into_iter()
@@ -103,17 +104,17 @@ impl Object {
         edges.fold(0.0, f64::max) / 2.0
     }
 
-    /// Whether there is none.
+    /// Returns true if no cell is occupied.
     pub(super) fn is_empty(&self) -> bool {
         !self.is_there.contains(&true)
     }
 
-    /// The cells in which the object is.
+    /// Iterates over the occupied cells.
     pub(super) fn all_cells(&self) -> impl Iterator<Item = [usize; 3]> + '_ {
         (0..self.is_there.len()).filter(|&cell| self.is_there[cell]).map(|cell| self.coordinates(cell))
     }
 
-    /// The middle of a cell, in index space.
+    /// Returns the centre of a cell, in index space.
     pub(super) fn middle(&self, cell: [usize; 3]) -> DVec3 {
         let along = |axis: usize| {
             let first = cell[axis] * self.edge[axis];
@@ -123,7 +124,7 @@ impl Object {
         DVec3::new(along(0), along(1), along(2))
     }
 
-    /// Parts whose cells touch, by a corner at least.
+    /// Finds connected components by flood fill with 26-connectivity.
     fn parts(&self) -> Vec<Part> {
         let mut is_left = self.is_there.clone();
         let mut parts = Vec::new();
@@ -157,7 +158,7 @@ impl Object {
         parts
     }
 
-    /// Whether a part is thin, and spread out over a face of the volume.
+    /// Returns true if a part is thin, and covers a face of the volume.
     fn is_table(&self, part: &Part) -> bool {
         let share = |axis: usize| (part.high[axis] + 1 - part.low[axis]) as f64 / self.cells[axis] as f64;
         (0..3).any(|axis| {
@@ -175,7 +176,7 @@ impl Object {
         let largest_of = |parts: &[&Part]| parts.iter().map(|part| part.cells.len()).max().unwrap_or(0);
         let no_tables: Vec<&Part> = parts.iter().filter(|part| !self.is_table(part)).collect();
         let all: Vec<&Part> = parts.iter().collect();
-        // What is left beside a table must be more than specks on it.
+        // The rest beside a table must be more than specks on it.
         let is_object = largest_of(&no_tables) as f64 >= SPECK * largest_of(&all) as f64;
         let kept = if is_object && !no_tables.is_empty() { no_tables } else { all };
         let least = SPECK * largest_of(&kept) as f64;
@@ -196,7 +197,7 @@ impl Object {
         self
     }
 
-    /// The share of its faces that lie on the volume's box.
+    /// Returns the share of cell faces that lie on the volume's box.
     pub(super) fn blockness(&self) -> f64 {
         let (mut faces, mut on_box) = (0usize, 0usize);
         for cell in self.all_cells() {
@@ -210,14 +211,14 @@ impl Object {
         on_box as f64 / faces.max(1) as f64
     }
 
-    /// The share of it that its largest part is.
+    /// Returns the share of occupied cells that belong to the largest part.
     pub(super) fn largest_part(&self) -> f64 {
         let sizes: Vec<usize> = self.parts().iter().map(|part| part.cells.len()).collect();
         let all: usize = sizes.iter().sum();
         sizes.into_iter().max().unwrap_or(0) as f64 / all.max(1) as f64
     }
 
-    /// How little surface it has for its size: 1 without any, 0 where every cell stands alone.
+    /// Returns the compactness, by surface per volume: nearly 1 for large solid shapes, 0 for isolated cells.
     pub(super) fn compactness(&self) -> f64 {
         let (mut cells, mut faces) = (0usize, 0usize);
         for cell in self.all_cells() {
@@ -231,7 +232,7 @@ impl Object {
         1.0 - faces as f64 / (6 * cells.max(1)) as f64
     }
 
-    /// First and last voxels of the object in every row of cells, in index space.
+    /// Returns the first and last voxels of the object in every row of cells, in index space.
     pub(super) fn outline(&self) -> Vec<DVec3> {
         let [nx, ny, nz] = self.cells;
         let mut ends = Vec::new();
@@ -266,7 +267,7 @@ mod tests {
         Object::shown_by(&shows_what_is_bright(), &volume)
     }
 
-    /// The corners of what is framed.
+    /// Returns the corners of the framed object.
     fn corners(object: &Object) -> [DVec3; 2] {
         let outline = object.outline();
         let fold =
@@ -319,7 +320,7 @@ mod tests {
     fn blocks_end_where_the_data_do() {
         assert_eq!(object([16; 3], |_| true).blockness(), 1.0);
         assert_eq!(object([40; 3], is_in_block).blockness(), 0.0);
-        // Half of the volume: of four faces' worth, all but the one in the middle are the box's.
+        // Half of the volume, with a surface of four square faces' area: all but the inner one lie on the box.
         let half = object([16; 3], |[x, _, _]| x < 8);
         assert!((half.blockness() - 3.0 / 4.0).abs() < 1e-12);
     }

@@ -1,4 +1,4 @@
-//! Properties that a first look has whatever the volume: no voxel matters by itself, nor how numbers are written.
+//! Robustness tests of the first look: single voxels and the number format must not matter.
 
 use glam::DVec3;
 
@@ -8,7 +8,7 @@ use crate::data::{Samples, ValueRange};
 
 const N: usize = 32;
 
-/// A soft ball of 900 in noise around 60, both with a ripple.
+/// Returns a soft ball of 900 in noise around 60, both with a ripple.
 fn values() -> Vec<f64> {
     let mut state = 3u64;
     let mut noise = || {
@@ -30,7 +30,8 @@ fn look(volume: &Volume) -> Settings {
     first_settings(volume, &Histogram::of(volume))
 }
 
-/// The largest change of a control point, as a share of the range that matters; and whether the object is still seen.
+/// Returns the largest change of a control point as a share of the robust range, and asserts that the object is
+/// visible.
 fn change(from: &Settings, volume: &Volume) -> f64 {
     let to = look(volume);
     assert_eq!(shown(&to, volume), Shown::Object);
@@ -57,7 +58,7 @@ fn one_voxel_of_any_value_changes_nothing() {
 
 #[test]
 fn one_voxel_between_object_and_surroundings_is_neither() {
-    // Nothing lies between 30 and 170 but that voxel.
+    // Only that voxel lies between 30 and 170.
     let value = |at: usize| {
         let radius = DVec3::from([at % N, at / N % N, at / N / N].map(|c| c as f64 - 15.5)).length();
         (if radius < 9.0 { 170.0 } else { 0.0 }) + (at % 31) as f64
@@ -90,7 +91,7 @@ fn a_border_of_the_lowest_value_hardly_matters() {
         let robust = padded.ranges().robust;
         assert!(robust.low > lowest - 0.1 * robust.span(), "{robust:?}");
         let function = look(&padded).transfer;
-        // Noise in the corners is not shown, the ball is.
+        // Noise in the corners is hidden, the ball is visible.
         assert!(
             function.opacity_at(50.0) < 0.01 && function.opacity_at(880.0) > 0.3,
             "{padding}: {function:?}"
@@ -110,7 +111,7 @@ fn scale_and_offset_change_nothing_in_relative_terms() {
         for point in &mut moved.transfer.points {
             point.value = point.value * scale + offset;
         }
-        // Rounding may put a value into the next bin.
+        // Rounding may move a value to the next bin.
         let by = change(&moved, &changed);
         assert!(by <= 0.002, "{scale} {offset}: {by}");
     }
@@ -131,7 +132,7 @@ fn number_types_change_nothing() {
     }
 }
 
-/// Half the ball with a bar on it: no axis is like another.
+/// Returns half of the ball with a bar on it, which has no symmetry between axes.
 fn lopsided(place: [f64; 3]) -> f64 {
     let [x, y, z] = place.map(|c| c - 15.5);
     let ball = if z > -3.0 { 9.0 - DVec3::new(x, y, z).length() } else { z + 3.0 };
@@ -139,7 +140,7 @@ fn lopsided(place: [f64; 3]) -> f64 {
     860.0 / (1.0 + (-2.0 * ball.max(bar)).exp()) + 40.0
 }
 
-/// It, with index axes that lie along others of the world, some turned around.
+/// Stores the lopsided shape with permuted and mirrored index axes.
 fn stored_otherwise(axes: [usize; 3], turned: [bool; 3]) -> Volume {
     let value = |at: usize| {
         let stored = [at % N, at / N % N, at / N / N];
@@ -160,7 +161,7 @@ fn stored_otherwise(axes: [usize; 3], turned: [bool; 3]) -> Volume {
     Volume::new("t", [N; 3], geometry, Samples::F64(values)).unwrap()
 }
 
-/// How far the eye has moved, and what it looks at, in scene units; relative to its distance.
+/// Returns the larger distance between the cameras' positions or targets, relative to the camera distance.
 fn moved(a: &Settings, b: &Settings) -> f64 {
     let target = |look: &Settings| DVec3::from(look.camera.target);
     let by = a.camera.eye().distance(b.camera.eye()).max(target(a).distance(target(b)));
@@ -179,7 +180,7 @@ fn how_axes_are_stored_changes_nothing() {
         let stored = stored_otherwise(axes, turned);
         let by = change(&before, &stored);
         assert!(by < 1e-9, "{axes:?} {turned:?}: {by}");
-        // Cells of objects begin at other corners.
+        // Cells of objects have different boundaries.
         let by = moved(&before, &look(&stored));
         assert!(by < 0.02, "{axes:?} {turned:?}: {by}");
     }
@@ -187,7 +188,7 @@ fn how_axes_are_stored_changes_nothing() {
 
 #[test]
 fn half_the_resolution_is_the_same_thing() {
-    // Twice as fine, so that half of it is what is tried elsewhere.
+    // Twice as fine, so that half of it is the resolution of the other tests.
     let (fine, per_voxel) = (2 * N, 0.5);
     let place = |c: usize| (c as f64 + 0.5) * per_voxel - 0.5;
     let value = |at: usize| lopsided([at % fine, at / fine % fine, at / fine / fine].map(place));
@@ -198,13 +199,13 @@ fn half_the_resolution_is_the_same_thing() {
     // Its edge is a voxel wide, and half as steep in blocks: curves may begin anywhere in it, …
     let by = change(&before, &half);
     assert!(by < 0.15, "{by}");
-    // … and show the same.
+    // … and show the same object.
     let seen = |volume: &Volume| {
         let object = Object::of_shown(&look(volume), volume);
         object.all_cells().count() as f64 / volume.voxel_count() as f64
     };
     assert!((seen(&half) / seen(&whole) - 1.0).abs() < 0.15, "{} {}", seen(&half), seen(&whole));
-    // Blocks at the outside of the object are half full, and what is framed ends by a block more or less of 32.
+    // Blocks at the object's surface are half full, so its extent differs by up to a block of 32.
     let by = moved(&before, &look(&half));
     assert!(by < 0.15, "{by}");
 }
@@ -221,7 +222,7 @@ fn it_does_not_matter_whether_air_is_missing() {
         (Object::of_shown(&look, &volume).all_cells().count() as f64, look)
     };
     let ((whole, before), (without_air, after)) = (seen(&values), seen(&missing));
-    // All that is left is the ball, with its soft edge, which half of it may show.
+    // Only the ball is left, with its soft edge, of which half may be visible.
     assert!((0.8..1.3).contains(&(without_air / whole)), "{whole} {without_air}");
     assert!(moved(&before, &after) < 0.1);
 }

@@ -1,57 +1,57 @@
-//! Where in its values a volume's object begins.
+//! Object threshold: the density at which a volume's object begins, by Otsu's method and the level of the border.
 
 use super::isosurfaces::Isosurfaces;
 use crate::data::{Histogram, Volume};
 
-/// Where the object begins, between its surroundings (0) and Otsu's split (1): thin shells and legs,
-/// blurred by the scanner, do not reach the split.
+/// Position of the threshold between the background level (0) and Otsu's split (1): thin shells and legs, blurred by
+/// the scanner, do not reach the split.
 const TOWARDS_SPLIT: f64 = 0.65;
 
-/// How far above its surroundings an object begins at least: five steps of 8-bit data.
+/// Smallest distance of the threshold above the background: five steps of 8-bit data.
 pub(super) const LEAST_ABOVE: f64 = 0.02;
 
-/// Where an object begins of which the surroundings end at `margin`, in data that `split` splits in two.
+/// Returns the threshold for a background level `margin`, in data with Otsu's split at `split`.
 pub(super) fn above_margin(margin: f64, split: f64) -> f64 {
     (margin + TOWARDS_SPLIT * (split - margin)).max(margin + LEAST_ABOVE)
 }
 
-/// Where an object begins.
+/// Boundary of an object in its values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Edge {
-    /// The density at which it begins.
+    /// Density at which the object begins.
     pub(super) start: f64,
-    /// How much the density rises there within a voxel.
+    /// Increase of density per voxel at the boundary.
     pub(super) slope: f64,
 }
 
-/// Where the object begins.
+/// Finds the density at which the object begins, and its slope.
 pub(super) fn object_edge(volume: &Volume, histogram: &Histogram) -> Edge {
     let isosurfaces = Isosurfaces::of(volume);
     let start = isosurfaces.unless_blocky(above_surroundings(volume, histogram));
     Edge { start, slope: isosurfaces.slope(start).unwrap_or_default() }
 }
 
-/// Between what is around the object and the volume's two halves.
+/// Returns the threshold between the background and Otsu's split.
 fn above_surroundings(volume: &Volume, histogram: &Histogram) -> f64 {
     let split = otsu(histogram);
     let around = border_level(volume, |density| density);
-    // An object that reaches the border on most sides has no margin to learn from; nor has one whose border is
-    // brighter than what splits the volume: that border is of the object.
+    // An object that reaches the border on most sides has no margin to measure; nor has a volume whose border is
+    // brighter than the split: that border belongs to the object.
     if split <= around && around < histogram.percentile(0.9) {
         return split;
     }
     let margin = if around < split { around } else { 0.0 };
-    // The split lies halfway to the object's bulk; its thin parts are dimmer, down to the margin's
-    // noise. Never so high that nothing is left.
+    // The split lies halfway to the object's bulk; its thin parts are dimmer, down to the margin's noise. The ceiling
+    // ensures that something is left.
     let ceiling = histogram.percentile(0.995).max(LEAST_ABOVE);
     above_margin(margin, split).min(ceiling)
 }
 
-/// Voxels that never decide where Otsu's split lies, of the smaller class.
+/// Number of voxels in the smaller class that must not affect Otsu's split.
 const FEW_VOXELS: f64 = 4.0;
 
-/// The density that splits the histogram into the two most compact classes (Otsu's method). Of splits that are as good
-/// but for a few voxels, as those between two classes far apart, the lowest.
+/// Returns the density that splits the histogram into the two most compact classes (Otsu's method). Of splits that
+/// are equally good but for a few voxels, as between two distant classes, the lowest.
 pub(super) fn otsu(histogram: &Histogram) -> f64 {
     let bins = histogram.counts.len() as f64;
     let (total, sum) = histogram
@@ -80,13 +80,13 @@ pub(super) fn otsu(histogram: &Histogram) -> f64 {
     (first as f64 + 1.0) / bins
 }
 
-/// What the volume's border looks like, in what `level` makes of densities: of the six faces, the median of their 98th
-/// percentiles. One face that cuts through the object, or two, do not matter. Voxels that hold nothing do not count, and
-/// a border that holds nothing anywhere is at 0.
+/// Returns the level of the volume's border, in densities transformed by `level`: the median of the six faces' 98th
+/// percentiles. One or two faces that cut through the object do not matter. Missing voxels do not count, and a border
+/// without any voxels has level 0.
 pub(super) fn border_level(volume: &Volume, level: impl Fn(f64) -> f64) -> f64 {
     let [nx, ny, nz] = volume.dims();
     let face = |u: usize, v: usize, at: &dyn Fn(usize, usize) -> [usize; 3]| {
-        // At most 128² voxels of a face tell enough.
+        // A sample of at most 128² voxels per face is enough.
         let (du, dv) = (u.div_ceil(128), v.div_ceil(128));
         let mut levels: Vec<f64> = (0..u)
             .step_by(du)
@@ -119,7 +119,7 @@ mod tests {
     use crate::data::Samples;
     use crate::model::auto::domain::roughness;
 
-    /// Slopes along x from 100 on, in a margin of padding that is two voxels wide.
+    /// Returns a ramp along x from 100 on, in a margin of padding that is two voxels wide.
     fn padded(n: usize, padding: i16) -> Volume {
         let value = |at: usize| {
             let place = [at % n, at / n % n, at / n / n];
@@ -133,7 +133,7 @@ mod tests {
     fn what_is_missing_is_no_border_and_has_no_texture() {
         let whole = padded(20, -2000);
         let volume = whole.clone().with_padding(-2000.0).unwrap();
-        // As bright as can be, if it were something.
+        // As bright as possible, if it counted.
         let bright = padded(20, 2000).with_padding(2000.0).unwrap();
         for volume in [&volume, &bright] {
             assert_eq!(border_level(volume, |density| density), 0.0);

@@ -1,12 +1,11 @@
-//! The first look of a volume that is treated as data of another kind, in the hands of somebody who has made settings
-//! already.
+//! First look for another kind of data than the detected one, applied over the user's existing settings.
 
 use super::{Wishes, first_settings_with, stand};
 use crate::data::{Histogram, KindName, Volume};
 use crate::model::{Floor, Sampling, SceneAxis, Settings};
 
-/// A first look at a volume as data of a kind, of its own where none is named, with an axis of the scene up whatever the
-/// file says.
+/// Returns the first look at a volume as the given kind of data (`None` for the detected kind), with the given scene
+/// axis up, whatever the file says.
 pub fn treated_as(
     volume: &Volume,
     histogram: &Histogram,
@@ -18,10 +17,10 @@ pub fn treated_as(
     look
 }
 
-/// A first look in place of settings.
+/// Returns a first look that replaces settings.
 ///
-/// What has nothing to do with the kind of data stays as it is there: how the picture is made and shown, shadows, cuts,
-/// what the floor looks like, and what is kept.
+/// Settings that do not depend on the kind of data stay as they are: output, sampling, shadows, clipping, the floor's
+/// appearance, and saved views and looks.
 #[must_use]
 pub fn in_place_of(look: Settings, settings: &Settings) -> Settings {
     let Settings { cuts, output, shadows, sampling, floor, kept, volume, .. } = settings.clone();
@@ -71,7 +70,7 @@ mod tests {
             (look.cuts.clone(), look.output.clone(), look.shadows.clone(), look.kept.clone())
         };
         assert_eq!(kept(&labels), kept(&mine));
-        // And back.
+        // Back to the detected kind.
         let again = treated(None, &labels);
         assert_eq!(again.sampling, mine.sampling);
         assert_eq!(again.transfer, mine.transfer);

@@ -1,5 +1,5 @@
-//! From which side a volume is seen first: a slice or a few as pictures are looked at, a body from the front where the file
-//! says which that is, all else from where most can be told about the object.
+//! View selection for the first look: slices face-on, bodies from the front if the file says where that is, and other
+//! objects from the most informative direction.
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
@@ -8,36 +8,36 @@ use super::object::Object;
 use crate::data::Volume;
 use crate::model::Camera;
 
-/// In front of a patient, to the right of the face and a little above: three-quarter, as portraits are. World space is
-/// right-anterior-superior.
+/// Azimuth and elevation in degrees in front of a patient, to the right of the face and a little above: a
+/// three-quarter view, as in portraits. World space is right-anterior-superior.
 const FRONT: (f64, f64) = (60.0, 13.0);
 
-/// A grid is flat whose shortest edge is less than this share of the next: from the side nothing of it would be seen.
+/// Ratio of a grid's shortest edge to the next below which it is flat: from the side nothing of it would be visible.
 const FLAT: f64 = 0.125;
 
-/// Several slices are seen a little from above, so that what lies over what can be told; one is a picture.
+/// Elevation in degrees for several slices, which shows how they are stacked; a single slice is viewed face-on.
 const ABOVE_DEG: f64 = 25.0;
 
-/// Azimuths that are tried, this far apart, at each of these elevations.
+/// Candidate views: azimuths at this interval, at each of these elevations.
 const AZIMUTH_STEP_DEG: f64 = 45.0;
 const ELEVATIONS_DEG: [f64; 2] = [20.0, 40.0];
 
-/// How much better than the usual view another must be: opening similar volumes should not jump from side to side. Views
-/// that people prefer have 1.11 and more (a stent in front of the spine, a face, a skull); below 1.10 nothing is gained,
-/// and a chair is looked down upon (1.02).
+/// Smallest ratio of scores at which another view replaces the default one: opening similar volumes should not jump
+/// from side to side. Views that people prefer have 1.11 and more (a stent in front of the spine, a face, a skull);
+/// below 1.10 nothing is gained, and a chair is seen from above (1.02).
 const CLEARLY_BETTER: f64 = 1.105;
 
-/// What directions of normals count for, beside the visible share of the surface: a flat wall that hides what lies behind
-/// it has much surface, and says little.
+/// Weight of the entropy of normals relative to the visible share of the surface: a flat wall that hides the rest has
+/// a large surface, and little information.
 const NORMALS: f64 = 2.0;
 
-/// Directions of normals are counted in so many classes along each axis of the picture.
+/// Number of classes of normal directions along each axis of the image.
 const NORMAL_CLASSES: usize = 8;
 
-/// Edge of a pixel of the small pictures that are compared, in cells: no gaps between cells that are neighbours.
+/// Edge of a pixel of the compared views, in cells: leaves no gaps between neighbouring cells.
 const PIXEL: f64 = 1.5;
 
-/// Points the camera at a volume's object from a good side; its distance is not changed.
+/// Rotates the camera to a good view of a volume's object; its distance is not changed.
 pub(super) fn choose(camera: &mut Camera, volume: &Volume, object: &Object) {
     if let Some(view) = face_of(volume) {
         turn_to(camera, view);
@@ -74,8 +74,8 @@ pub(super) fn choose(camera: &mut Camera, volume: &Volume, object: &Object) {
     }
 }
 
-/// How a grid is looked at that has only few slices, as right, up and backward in scene space: across them, rows of a
-/// picture from the top down, never mirrored.
+/// Returns the view of a grid with few slices, as right, up and backward axes in scene space: perpendicular to the
+/// slices, image rows from the top down, never mirrored. `None` for other grids.
 fn face_of(volume: &Volume) -> Option<DMat3> {
     let axes = volume.scene().scene_from_index.matrix3;
     let axes = [axes.x_axis, axes.y_axis, axes.z_axis];
@@ -86,7 +86,7 @@ fn face_of(volume: &Volume) -> Option<DMat3> {
     if shortest >= FLAT * next {
         return None;
     }
-    // Slices that lie behind each other are pictures, whose second axis runs down; others stand.
+    // Slices stacked along z are images, whose second axis runs down; others are upright.
     let (right, up) = match across {
         0 => (axes[1], axes[2]),
         1 => (axes[0], axes[2]),
@@ -100,12 +100,12 @@ fn face_of(volume: &Volume) -> Option<DMat3> {
     Some(DMat3::from_cols(right, up * cosine - backward * sine, backward * cosine + up * sine))
 }
 
-/// Turns a camera so that right, up and backward are these, in scene space.
+/// Rotates a camera to the given right, up and backward axes in scene space.
 fn turn_to(camera: &mut Camera, view: DMat3) {
     let upright_from_scene = camera.up.scene_from_upright().transpose();
     let (up, backward) = (upright_from_scene * view.y_axis, upright_from_scene * view.z_axis);
     let elevation = backward.z.clamp(-1.0, 1.0).asin();
-    // Straight from above or below the eye is on no side: what points up says on which it would come to be.
+    // Seen from straight above or below, the azimuth is undefined; the up axis determines it.
     let aside = if backward.truncate().length() > 1e-6 { backward } else { -up * backward.z.signum() };
     camera.azimuth_deg = aside.y.atan2(aside.x).to_degrees();
     camera.elevation_deg = elevation.to_degrees();
@@ -114,31 +114,31 @@ fn turn_to(camera: &mut Camera, view: DMat3) {
     camera.roll_deg = (-view.y_axis.dot(level.x_axis)).atan2(view.y_axis.dot(level.y_axis)).to_degrees();
 }
 
-/// A cell of the object's surface.
+/// Cell on the surface of the object.
 struct SurfaceCell {
-    /// In scene space.
+    /// Centre of the cell in scene space.
     place: DVec3,
-    /// Outwards, in scene space.
+    /// Outward normal in scene space.
     normal: DVec3,
-    /// It lies at a face of the volume: what is seen there is where the data end, not the object.
+    /// True at a face of the volume, where the data end, not the object.
     is_at_face: bool,
 }
 
-/// Where the object ends.
+/// Surface cells of the object.
 struct Surface {
     cells: Vec<SurfaceCell>,
     /// Edge of a pixel, in scene units.
     pixel: f64,
 }
 
-/// What can be told from a view.
+/// Information in a view of the object.
 #[derive(Debug, Clone, Copy, Default)]
 struct Seen {
-    /// Share of the surface that is visible.
+    /// Visible share of the surface.
     surface: f64,
-    /// Entropy of the directions of its normals, in bits.
+    /// Entropy of the directions of visible normals, in bits.
     normals: f64,
-    /// Pixels that the object covers.
+    /// Number of pixels that the object covers.
     area: f64,
 }
 
@@ -162,7 +162,7 @@ impl Seen {
 impl Surface {
     fn of(volume: &Volume, object: &Object) -> Self {
         let scene = volume.scene();
-        // Normals are perpendicular to what is stretched.
+        // Normals transform with the inverse transpose.
         let normal_from_index = scene.scene_from_index.matrix3.inverse().transpose();
         let last = object.cells.map(|n| n - 1);
         let cells = object
@@ -198,7 +198,7 @@ impl Surface {
         Self { cells, pixel }
     }
 
-    /// What is visible in a parallel projection.
+    /// Measures a view in orthographic projection.
     fn seen_from(&self, scene_from_view: DMat3) -> Seen {
         let view_from_scene = scene_from_view.transpose();
         let local: Vec<DVec3> = self.cells.iter().map(|cell| view_from_scene * cell.place).collect();
@@ -209,7 +209,8 @@ impl Surface {
         let pixel_of = |p: &DVec3| {
             ((p.y - low.y) / self.pixel) as usize * columns + ((p.x - low.x) / self.pixel) as usize
         };
-        // Nearest to the eye, which is where z grows; and whether that is the object rather than where data end.
+        // Depth buffer: z of the nearest cell, which grows towards the camera, and true if that is the object's own
+        // surface.
         let mut nearest = vec![(f64::NEG_INFINITY, false); columns * rows];
         for (p, cell) in local.iter().zip(&self.cells) {
             let pixel = &mut nearest[pixel_of(p)];
@@ -245,7 +246,7 @@ mod tests {
     use crate::model::SceneAxis;
     use crate::model::auto::tests::shows_what_is_bright;
 
-    /// A plate with knobs on its side of high y.
+    /// Returns a plate with knobs on its side of high y.
     fn plate() -> Volume {
         let dims = [48usize, 48, 48];
         let value = |at: usize| {
@@ -268,7 +269,7 @@ mod tests {
         let object = Object::shown_by(&shows_what_is_bright(), &volume);
         let mut camera = Camera::default();
         choose(&mut camera, &volume, &object);
-        // The usual view is from low y.
+        // The default view is from low y.
         assert!(camera.scene_from_view().z_axis.y > 0.3, "{camera:?}");
     }
 
@@ -314,19 +315,19 @@ mod tests {
             Volume::with_spacing("slice", dims, DVec3::ONE, samples).unwrap()
         };
         for up in SceneAxis::ALL {
-            // Columns to the right, rows downwards: what comes first is at the top left.
+            // Columns to the right, rows downwards: the first voxel is at the top left.
             let view = aimed(&slice([40, 30, 1]), up);
             assert!(is_near(view.x_axis, DVec3::X) && is_near(view.y_axis, DVec3::NEG_Y), "{up:?}: {view}");
             let view = aimed(&slice([40, 1, 30]), up);
             assert!(is_near(view.x_axis, DVec3::X) && is_near(view.y_axis, DVec3::Z), "{up:?}: {view}");
-            // Several are seen a little from their upper border.
+            // Several slices are seen a little from their upper border.
             let view = aimed(&slice([40, 30, 3]), up);
             assert!(
                 is_near(view.x_axis, DVec3::X) && (view.y_axis.y + ABOVE_DEG.to_radians().cos()).abs() < 1e-9
             );
             assert!(view.z_axis.y < -0.4 && view.z_axis.z < -0.9, "{view}");
         }
-        // Of a body, too: from the feet, as slices are looked at.
+        // A single slice of a body is seen from the feet, as radiologists view slices.
         let view = aimed(&slice([40, 30, 1]).with_anatomy(true), SceneAxis::default());
         assert!(is_near(view.z_axis, DVec3::NEG_Z));
     }

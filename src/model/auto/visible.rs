@@ -1,4 +1,4 @@
-//! Sees to it that a first look shows something: where the best guess does not, the next one is taken.
+//! Fallbacks for an empty first look: if the best guess shows nothing, the next one is used.
 
 use glam::DVec3;
 
@@ -12,19 +12,19 @@ use crate::model::{
     TransferFunction,
 };
 
-/// Pixels of the frame in which the object is looked for.
+/// Size in pixels of the frame in which the object is searched.
 const FRAME: [f64; 2] = [48.0 * FRAME_ASPECT, 48.0];
 
-/// Share of the frame's pixels in which the object must be seen: a thin line through a tenth of it.
+/// Share of the frame's pixels that the object must cover: a thin line through a tenth of it.
 const LEAST_SEEN: f64 = 0.005;
 
-/// Share of the volume from which it is not an object that is shown, but the volume's box.
+/// Share of visible cells above which the volume's box is shown rather than an object.
 const MOST_SHOWN: f64 = 0.95;
 
 /// Share of the voxels that [`densest`] shows.
 const DENSEST: f64 = 0.05;
 
-/// A first look at data of a kind, or if it shows nothing, or nothing but the volume's box, another that shows something.
+/// Returns the first look, or if it shows nothing, or only the volume's box, a fallback that shows something.
 pub(super) fn or_another(
     first: Settings,
     volume: &Volume,
@@ -64,7 +64,7 @@ pub(super) fn or_another(
     next.unwrap_or(first)
 }
 
-/// What a look shows of a volume.
+/// Content of the image that a look produces.
 #[derive(Debug, PartialEq)]
 pub(super) enum Shown {
     Nothing,
@@ -85,7 +85,7 @@ pub(super) fn shown(settings: &Settings, volume: &Volume) -> Shown {
     for cell in object.all_cells() {
         let point: DVec3 = scene_from_index.transform_point3(object.middle(cell));
         let Some((x, y, _)) = settings.camera.pixel_from_scene(point, width, height) else { continue };
-        // Pixels that a cell covers, one at least; none beyond the border.
+        // Pixels that a cell covers, at least one, clipped to the border.
         let covered = |at: f64, size: f64| {
             let [first, last] = [at - reach, at + reach].map(|end| end.floor().clamp(-1.0, size));
             (first as i64).max(0)..=(last as i64).min(size as i64 - 1)
@@ -100,8 +100,8 @@ pub(super) fn shown(settings: &Settings, volume: &Volume) -> Shown {
     if seen as f64 >= LEAST_SEEN * pixels.len() as f64 { Shown::Object } else { Shown::Nothing }
 }
 
-/// A transfer function that shows the twentieth of the voxels that has the highest values; all of a volume that has one
-/// value only.
+/// Returns a transfer function that shows the twentieth of the voxels with the highest values; everything in a volume
+/// with only one value.
 pub fn densest(volume: &Volume) -> TransferFunction {
     let ValueRange { low, high } = volume.ranges().robust;
     let point = |value: f64, lightness: f32, opacity: f64| {
@@ -110,7 +110,7 @@ pub fn densest(volume: &Volume) -> TransferFunction {
     let points = if low == high {
         vec![point(low, 0.9, 0.9)]
     } else {
-        // Where one value has more than that, all that is above the other values.
+        // If one value has more voxels than that, everything above the midpoint of the range.
         let found = volume.quantile(1.0 - DENSEST);
         let start = if found >= high { f64::midpoint(low, high) } else { found.max(low) };
         let at = |share: f64| start + share * (high - start);
@@ -119,7 +119,7 @@ pub fn densest(volume: &Volume) -> TransferFunction {
     TransferFunction { points, interpolation: Interpolation::Opacity, ..TransferFunction::default() }
 }
 
-/// A look as it is, but with a transfer function that shows something: see [`densest`].
+/// Returns the settings with a transfer function that certainly shows something: see [`densest`].
 pub fn show_something(settings: &Settings, volume: &Volume) -> Settings {
     Settings {
         range: DensityRange::Robust,

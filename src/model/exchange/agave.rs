@@ -1,5 +1,5 @@
-//! AGAVE's settings (JSON): the first channel that is on. Its curve is laid over the range of the volume, in
-//! one of AGAVE's ways: window and level, an isovalue with a width, points, or the ends of the range.
+//! Import of AGAVE settings (JSON): the first enabled channel. Its curve is laid over the range of the volume in one
+//! of AGAVE's modes: window and level, an isovalue with a width, control points, or the ends of the range.
 
 use serde_json::Value;
 
@@ -7,7 +7,7 @@ use super::{ExchangeError, form, numbers, rgb};
 use crate::data::ValueRange;
 use crate::model::{ControlPoint, Easing, TransferFunction};
 
-/// Reads the curve and the colour of a channel.
+/// Reads the opacity curve and the colour of a channel.
 pub(crate) fn from_agave(tree: &Value, range: ValueRange) -> Result<TransferFunction, ExchangeError> {
     let channels = tree.get("channels").and_then(Value::as_array);
     let channels = channels.filter(|all| !all.is_empty()).ok_or_else(|| form("there are no channels"))?;
@@ -33,17 +33,17 @@ pub(crate) fn from_agave(tree: &Value, range: ValueRange) -> Result<TransferFunc
         Some(1) => {
             let (value, half) = (share("isovalue")?, share("isorange")?.abs().max(1e-6) / 2.0);
             let step = |at: f64, a: f64| ControlPoint { easing: Easing::Step, ..point(at, a) };
-            // Nothing on either side.
+            // Opacity is 0 on either side.
             vec![point(value - half, 0.0), step(value - half, 1.0), step(value + half, 0.0)]
         }
         Some(3) => custom(curve, &point)?,
-        // Percentiles, and ends of the range: where they are in this volume, *Fit* finds.
+        // Percentiles and ends of the range: *Fit* finds their values in this volume.
         _ => vec![point(0.0, 0.0), point(1.0, 1.0)],
     };
     Ok(TransferFunction { points, ..TransferFunction::default() })
 }
 
-/// Points with red, green, blue and opacity, of which the last counts.
+/// Reads control points of red, green, blue and opacity, of which only the opacity is used.
 fn custom(
     curve: &Value,
     point: &dyn Fn(f64, f64) -> ControlPoint,

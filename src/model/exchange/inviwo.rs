@@ -1,5 +1,5 @@
-//! Inviwo's transfer functions (`.itf`, XML): points at shares of the range of the data. Older files have
-//! their place as an attribute x, newer ones as a content.
+//! Import and export of Inviwo transfer functions (`.itf`, XML): points at fractions of the data range. Older files
+//! have the position in an attribute `x`, newer ones in `content`.
 
 use std::fmt::Write as _;
 
@@ -9,7 +9,7 @@ use super::{ExchangeError, form, rgb};
 use crate::data::{ValueRange, xml};
 use crate::model::{ControlPoint, TransferFunction};
 
-/// Reads points of either kind.
+/// Reads the points of either file version.
 pub(crate) fn from_itf(text: &str, range: ValueRange) -> Result<TransferFunction, ExchangeError> {
     let document = xml::parse(text)?;
     let mut points = Vec::new();
@@ -30,7 +30,7 @@ pub(crate) fn from_itf(text: &str, range: ValueRange) -> Result<TransferFunction
     Ok(TransferFunction { points, ..TransferFunction::default() })
 }
 
-/// Writes the newer kind of file (version 3).
+/// Writes the newer file version (3).
 pub(crate) fn to_itf(function: &TransferFunction, range: ValueRange) -> String {
     let mut text =
         "<?xml version=\"1.0\" ?>\n<InviwoWorkspace version=\"3\">\n    <maskMin content=\"0\" />\n    \
@@ -38,7 +38,7 @@ pub(crate) fn to_itf(function: &TransferFunction, range: ValueRange) -> String {
             .to_owned();
     for ControlPoint { value, color: [r, g, b], opacity, easing: _ } in &function.points {
         let share = range.share_of(*value);
-        // Writing to a text cannot fail.
+        // Writing to a string cannot fail.
         writeln!(text, "        <Point>\n            <pos content=\"{share}\" />").ok();
         writeln!(
             text,
@@ -50,7 +50,7 @@ pub(crate) fn to_itf(function: &TransferFunction, range: ValueRange) -> String {
     text
 }
 
-/// An attribute that is a number.
+/// Parses an XML attribute as a finite number.
 pub(crate) fn number(node: Node<'_, '_>, attribute: &str) -> Result<f64, ExchangeError> {
     let found = node.attribute(attribute).and_then(|text| text.trim().parse().ok());
     let name = node.tag_name().name();

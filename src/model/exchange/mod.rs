@@ -1,7 +1,8 @@
-//! Transfer functions in the files of other programs.
+//! Exchange of transfer functions with other programs: import and export of their file formats.
 //!
-//! Some say values of the data (ParaView, 3D Slicer, Voreen where it has a domain); others are laid over the
-//! range of the volume. What they cannot say, such as smooth ways between points, they get as more points.
+//! Some formats hold data values (ParaView, 3D Slicer, Voreen where it has a domain); others are laid over the range
+//! of the volume. Features that a format lacks, such as smooth segments between points, are written as additional
+//! points.
 
 mod agave;
 mod inviwo;
@@ -20,47 +21,47 @@ use serde_json::Value;
 use crate::data::{ValueRange, XmlError};
 use crate::model::{ControlPoint, Easing, Interpolation, MAX_POINTS, Mixing, STEPS, TransferFunction};
 
-/// Endings of the files that [`import`] reads.
+/// File extensions that [`import`] reads.
 pub const IMPORTED: [&str; 6] = ["json", "vp", "itf", "tfi", "clut", "lut"];
 
-/// Endings of the files that [`export`] writes.
+/// File extensions that [`export`] writes.
 pub const EXPORTED: [&str; 5] = ["json", "vp", "itf", "clut", "lut"];
 
-/// Largest value: that of data in 32-bit floats.
+/// Largest magnitude of a value: that of data in 32-bit floats.
 const MOST_VALUE: f64 = f32::MAX as f64;
 
-/// Bytes of the longest XML files and tables that are read: a table of 4096 keys has as many.
+/// Largest size of an XML file or table, in bytes: that of a table of 4096 keys.
 const MOST_XML: usize = 2 << 20;
 
-/// Bytes of the longest JSON files that are read: 4096 points of opacity and as many of colour have them in Slicer's.
+/// Largest size of a JSON file, in bytes: that of Slicer's with 4096 points of opacity and as many of colour.
 const MOST_JSON: usize = 2 << 20;
 
-/// Bytes of the longest table of nodes: 256 of them have a tenth of it.
+/// Largest size of a node table, in bytes: ten times that of 256 nodes.
 const MOST_CLUT: usize = 1 << 16;
 
-/// Why a file is no transfer function.
+/// Reason why a file is not a usable transfer function.
 #[derive(Debug, thiserror::Error)]
 pub enum ExchangeError {
-    /// Not JSON.
+    /// Syntax error: the text is not JSON.
     #[error("not valid JSON: {0}")]
     Syntax(#[from] serde_json::Error),
-    /// XML that is broken, or that would take long to read.
+    /// XML that is malformed or too costly to parse.
     #[error("{0}; a file that Inviwo (.itf) or Voreen (.tfi) has written helps")]
     Xml(#[from] XmlError),
-    /// Something else than it should be.
+    /// Content that does not fit the format, with a description.
     #[error(
         "{0}; a file that ParaView or AGAVE (.json), Slicer (.vp, .vp.json), Inviwo (.itf), Voreen (.tfi), MRIcroGL (.clut) or ImageJ (.lut) has written helps"
     )]
     Form(String),
-    /// Nothing that can be written.
+    /// File extension that [`export`] does not support.
     #[error("{0} is no ending of a transfer function; .json, .vp, .vp.json, .itf, .clut and .lut are")]
     Ending(String),
 }
 
-/// Reads the transfer function of a file with that name, for a volume with these values.
+/// Reads the transfer function in a file with the given name, for a volume with the given value range.
 ///
 /// # Errors
-/// When the file is not what its name says.
+/// Returns an error if the content does not fit the format that the file extension names.
 pub fn import(path: &Path, bytes: &[u8], range: ValueRange) -> Result<TransferFunction, ExchangeError> {
     let ending = ending(path);
     if ending == "lut" && !bytes.is_ascii() {
@@ -85,14 +86,14 @@ pub fn import(path: &Path, bytes: &[u8], range: ValueRange) -> Result<TransferFu
     Ok(function)
 }
 
-/// A text if it has at most so many bytes, for files whose readers take long over many things.
+/// Returns the text if it has at most `most` bytes; readers of such files are slow on large input.
 fn within(text: &str, most: usize) -> Result<&str, ExchangeError> {
     if text.len() > most { Err(form("it is longer than any transfer function")) } else { Ok(text) }
 }
 
-/// A JSON file of whichever program writes what it holds.
+/// Reads a JSON file; its content tells which program wrote it.
 fn from_json(text: &str, range: ValueRange) -> Result<TransferFunction, ExchangeError> {
-    // ParaView itself ships a file with a comma too many.
+    // ParaView itself ships a file with a trailing comma.
     let mut tree: Value = serde_json::from_str(text).or_else(|err| {
         let trimmed = text.trim_end().strip_suffix(']').map(str::trim_end);
         let Some(list) = trimmed.and_then(|list| list.strip_suffix(',')) else { return Err(err) };
@@ -109,10 +110,10 @@ fn from_json(text: &str, range: ValueRange) -> Result<TransferFunction, Exchange
     }
 }
 
-/// A transfer function as a file of that name, for a volume with these values.
+/// Encodes a transfer function for a file with the given name, for a volume with the given value range.
 ///
 /// # Errors
-/// When the name has no ending that says which program it is for.
+/// Returns an error if the file extension is not one of [`EXPORTED`].
 pub fn export(path: &Path, function: &TransferFunction, range: ValueRange) -> Result<Vec<u8>, ExchangeError> {
     let stem = path.file_stem().map_or_else(|| "Chiaroscuro".into(), |stem| stem.to_string_lossy());
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
@@ -133,7 +134,7 @@ fn ending(path: &Path) -> String {
     path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
 }
 
-/// The function with nothing but straight ways, opacities that are linear, and colours mixed as light.
+/// Returns the function with linear segments only, linear opacity, and colours mixed in linear RGB.
 fn straightened(function: &TransferFunction) -> TransferFunction {
     let mut straight = function.clone();
     for index in (0..straight.points.len().saturating_sub(1)).rev() {
@@ -141,7 +142,7 @@ fn straightened(function: &TransferFunction) -> TransferFunction {
         let bends = (function.mixing == Mixing::Seen && point.color != next.color)
             || (function.interpolation == Interpolation::Extinction && point.opacity != next.opacity);
         if bends && point.easing == Easing::Linear {
-            // Pieces of what a straight way is here, which others draw as a curve.
+            // Short pieces of the segment, which is linear here but curved in the other program.
             let share = |step: u32| f64::from(step) / f64::from(STEPS);
             let value = |step: u32| point.value + (next.value - point.value) * share(step);
             let between: Vec<_> = (1..STEPS).map(|step| function.point_at(value(step))).collect();
@@ -153,7 +154,7 @@ fn straightened(function: &TransferFunction) -> TransferFunction {
     TransferFunction { interpolation: Interpolation::Opacity, mixing: Mixing::Light, ..straight }
 }
 
-/// A transfer function from colours and opacities at different values; neither list is empty.
+/// Builds a transfer function from colours and opacities at different values; neither list is empty.
 fn merged(mut colors: Vec<(f64, [f32; 3])>, mut opacities: Vec<(f64, f64)>) -> TransferFunction {
     colors.sort_by(|a, b| a.0.total_cmp(&b.0));
     opacities.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -163,7 +164,7 @@ fn merged(mut colors: Vec<(f64, [f32; 3])>, mut opacities: Vec<(f64, f64)>) -> T
             std::array::from_fn(|c| mix(f64::from(a[c]), f64::from(b[c]), t) as f32)
         })
     };
-    // What jumps has two points at a value: the first opacity there belongs to the first colour there.
+    // A jump has two points at one value: the first opacity there belongs to the first colour there.
     let mut points = Vec::new();
     let mut before = 0;
     for (at, &(value, opacity)) in opacities.iter().enumerate() {
@@ -187,7 +188,7 @@ fn merged(mut colors: Vec<(f64, [f32; 3])>, mut opacities: Vec<(f64, f64)>) -> T
     function
 }
 
-/// What stands at a value between the points of a list in ascending order.
+/// Interpolates a list sorted by value; outside it, returns the nearest end.
 fn between<T: Copy>(points: &[(f64, T)], value: f64, mix: impl Fn(&T, &T, f64) -> T) -> T {
     let upper = points.partition_point(|point| point.0 <= value);
     match (upper.checked_sub(1).map(|at| points[at]), points.get(upper)) {
@@ -202,7 +203,7 @@ fn form(what: &str) -> ExchangeError {
     ExchangeError::Form(what.to_owned())
 }
 
-/// A list of numbers in a JSON file.
+/// Reads a JSON array of finite numbers.
 fn numbers(list: Option<&Value>, name: &str) -> Result<Vec<f64>, ExchangeError> {
     let list = list.and_then(Value::as_array).ok_or_else(|| form(&format!("there is no list {name}")))?;
     let number = |value: &Value| value.as_f64().filter(|number| number.is_finite());
@@ -210,7 +211,7 @@ fn numbers(list: Option<&Value>, name: &str) -> Result<Vec<f64>, ExchangeError> 
     found.ok_or_else(|| form(&format!("{name} holds something that is no number")))
 }
 
-/// Shares of the whole as colours.
+/// Converts RGB fractions to a colour, clamped to 0 … 1; missing components are 1.
 fn rgb(shares: &[f64]) -> [f32; 3] {
     std::array::from_fn(|c| shares.get(c).map_or(1.0, |share| share.clamp(0.0, 1.0) as f32))
 }

@@ -1,4 +1,4 @@
-//! Our own: a preset that holds nothing but the transfer function.
+//! Import and export of Chiaroscuro's own format: a preset that holds only the transfer function.
 
 use serde_json::{Value, json};
 
@@ -14,7 +14,7 @@ pub(crate) fn from_own(tree: &mut Value, range: ValueRange) -> Result<TransferFu
     Ok(settings.transfer)
 }
 
-/// A preset.
+/// Writes a preset that holds only the transfer function.
 pub(crate) fn to_own(function: &TransferFunction) -> String {
     format!("{:#}\n", json!({ "transfer": function }))
 }

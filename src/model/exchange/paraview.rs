@@ -1,5 +1,6 @@
-//! ParaView's colour maps (JSON): `RGBPoints` (value, red, green, blue …) and `Points` (value, opacity,
-//! midpoint, sharpness …). Opacities refer to a unit distance of the data, as ours do to the opacity unit.
+//! Import and export of ParaView colour maps (JSON): `RGBPoints` (value, red, green, blue …) and `Points` (value,
+//! opacity, midpoint, sharpness …). Opacities refer to ParaView's unit distance, as Chiaroscuro's do to the opacity
+//! unit.
 
 use serde_json::{Value, json};
 
@@ -23,13 +24,13 @@ pub(crate) fn from_paraview(tree: &Value) -> Result<TransferFunction, ExchangeEr
             }
             points.chunks_exact(4).map(|at| (at[0], at[1].clamp(0.0, 1.0))).collect()
         }
-        // A map of colours alone: a ramp.
+        // A map of colours alone gets a linear opacity ramp.
         None => vec![(colors[0].0, 0.0), (colors[colors.len() - 1].0, 1.0)],
     };
     Ok(merged(colors, opacities))
 }
 
-/// A transfer function as ParaView reads it.
+/// Writes a transfer function as a ParaView colour map.
 pub(crate) fn to_paraview(function: &TransferFunction, name: &str) -> String {
     let colors: Vec<f64> = function
         .points

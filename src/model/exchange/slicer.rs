@@ -1,5 +1,5 @@
-//! 3D Slicer's volume properties: `.vp`, lines of numbers, and `.vp.json` (schema 1.0.0). Values are those of
-//! the data, opacities per millimetre or whatever unit distance the file says.
+//! Import and export of 3D Slicer volume properties: `.vp`, lines of numbers, and `.vp.json` (schema 1.0.0). Values
+//! are data values; opacities are per millimetre or per the unit distance that the file gives.
 
 use std::fmt::Write as _;
 
@@ -9,8 +9,8 @@ use super::{ExchangeError, form, merged, numbers, rgb};
 use crate::data::ValueRange;
 use crate::model::TransferFunction;
 
-/// Reads a `.vp`: numbers of the shading, then opacities by value, opacities by gradient, and colours by value,
-/// each list behind the count of its numbers.
+/// Reads a `.vp` file: numbers of the shading, then opacities by value, opacities by gradient, and colours by value,
+/// each list preceded by the count of its numbers.
 pub(crate) fn from_vp(text: &str) -> Result<TransferFunction, ExchangeError> {
     let mut lists = Vec::new();
     for line in text.lines() {
@@ -35,7 +35,7 @@ pub(crate) fn from_vp(text: &str) -> Result<TransferFunction, ExchangeError> {
     Ok(merged(colors, opacities))
 }
 
-/// Writes a `.vp`, with shading as Slicer's own presets for bone have it.
+/// Writes a `.vp` file, with the shading of Slicer's own presets for bone.
 pub(crate) fn to_vp(function: &TransferFunction) -> String {
     let points = &function.points;
     // Linear interpolation, shaded; diffuse, ambient, specular, power.
@@ -43,13 +43,13 @@ pub(crate) fn to_vp(function: &TransferFunction) -> String {
     let mut list = |count: usize, numbers: &mut dyn Iterator<Item = f64>| {
         text.push_str(&count.to_string());
         for number in numbers {
-            // Writing to a text cannot fail.
+            // Writing to a string cannot fail.
             write!(text, " {number}").ok();
         }
         text.push('\n');
     };
     list(2 * points.len(), &mut points.iter().flat_map(|point| [point.value, point.opacity]));
-    // Opaque whatever the gradient.
+    // Gradient opacity of 1 everywhere.
     list(4, &mut [0.0, 1.0, 255.0, 1.0].into_iter());
     list(
         4 * points.len(),
@@ -58,7 +58,7 @@ pub(crate) fn to_vp(function: &TransferFunction) -> String {
     text
 }
 
-/// The first component of the first volume property.
+/// Reads the first component of the first volume property.
 pub(crate) fn from_vp_json(tree: &Value) -> Result<TransferFunction, ExchangeError> {
     let part = tree.pointer("/volumeProperties/0/components/0");
     let part = part.ok_or_else(|| form("there is no component in the first volume property"))?;
@@ -81,7 +81,7 @@ pub(crate) fn from_vp_json(tree: &Value) -> Result<TransferFunction, ExchangeErr
     Ok(merged(colors?, opacities?))
 }
 
-/// Writes the first component of a volume property, as `.vp.json`.
+/// Writes a volume property with one component, as `.vp.json`.
 pub(crate) fn to_vp_json(function: &TransferFunction, range: ValueRange) -> String {
     let points = &function.points;
     let opacities: Vec<Value> = points

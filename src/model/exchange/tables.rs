@@ -1,5 +1,5 @@
-//! Colour tables: nodes of `MRIcroGL` (`.clut`) and 256 colours of `ImageJ` (`.lut`), laid over the range of the
-//! volume.
+//! Import and export of colour tables, laid over the range of the volume: nodes of `MRIcroGL` (`.clut`) and 256
+//! colours of `ImageJ` (`.lut`).
 
 use std::fmt::Write as _;
 
@@ -7,13 +7,13 @@ use super::{ExchangeError, form, rgb};
 use crate::data::ValueRange;
 use crate::model::{ControlPoint, TransferFunction, srgb_from_linear};
 
-/// Entries of a table of bytes.
+/// Number of entries of a byte table.
 const TABLE: usize = 256;
 
-/// Entries of a table between the points that are taken from it: 17 points.
+/// Sampling interval when a table becomes control points: every 16th entry, 17 points.
 const EVERY: usize = 16;
 
-/// `MRIcroGL`'s colour table: nodes with a place from 0 to 255 and red, green, blue and opacity as bytes.
+/// Reads an `MRIcroGL` colour table: nodes with a position of 0 … 255 and red, green, blue and opacity as bytes.
 pub(crate) fn from_clut(text: &str, range: ValueRange) -> Result<TransferFunction, ExchangeError> {
     let entry = |key: &str| {
         text.lines().find_map(|line| {
@@ -42,7 +42,7 @@ pub(crate) fn from_clut(text: &str, range: ValueRange) -> Result<TransferFunctio
     Ok(TransferFunction { points, ..TransferFunction::default() })
 }
 
-/// Writes `MRIcroGL`'s colour table. Places are bytes, so that points closer than that fall together.
+/// Writes an `MRIcroGL` colour table. Positions are bytes, so that points closer than that coincide.
 pub(crate) fn to_clut(function: &TransferFunction, range: ValueRange) -> String {
     let ends = function.points.first().zip(function.points.last());
     let range = ends.and_then(|(a, b)| ValueRange::spread(a.value, b.value)).unwrap_or(range);
@@ -50,7 +50,7 @@ pub(crate) fn to_clut(function: &TransferFunction, range: ValueRange) -> String 
     let mut nodes: Vec<(u8, [u8; 4])> = Vec::new();
     for ControlPoint { value, color, opacity, easing: _ } in &function.points {
         let [r, g, b] = color.map(|c| byte(f64::from(c)));
-        // Places ascend: what jumps does so between two of them, at the end between the last two.
+        // Positions must ascend: a jump takes two adjacent ones, at the end the last two.
         let mut place = byte(range.share_of(*value));
         if let Some(last) = nodes.last().map(|last| last.0).filter(|last| place <= *last) {
             place = last.saturating_add(1);
@@ -61,14 +61,14 @@ pub(crate) fn to_clut(function: &TransferFunction, range: ValueRange) -> String 
         }
         nodes.push((place, [r, g, b, byte(*opacity)]));
     }
-    // A table has two nodes at least.
+    // A table needs two nodes or more.
     if let [(0..=254, color)] = nodes[..] {
         nodes.push((u8::MAX, color));
     }
     let mut text =
         format!("[FLT]\nmin={}\nmax={}\n[INT]\nnumnodes={}\n[BYT]\n", range.low, range.high, nodes.len());
     for (at, (place, _)) in nodes.iter().enumerate() {
-        // Writing to a text cannot fail.
+        // Writing to a string cannot fail.
         writeln!(text, "nodeintensity{at}={place}").ok();
     }
     text.push_str("[RGBA255]\n");
@@ -78,7 +78,7 @@ pub(crate) fn to_clut(function: &TransferFunction, range: ValueRange) -> String 
     text
 }
 
-/// `ImageJ`'s colour table: 256 reds, as many greens, and as many blues, perhaps behind a header.
+/// Reads an `ImageJ` colour table: 256 reds, 256 greens and 256 blues, optionally after a header.
 pub(crate) fn from_bytes(bytes: &[u8], range: ValueRange) -> Result<TransferFunction, ExchangeError> {
     let first = bytes.len().checked_sub(3 * TABLE).ok_or_else(|| form("a table has 768 bytes"))?;
     let table = &bytes[first..];
@@ -86,7 +86,7 @@ pub(crate) fn from_bytes(bytes: &[u8], range: ValueRange) -> Result<TransferFunc
     Ok(ramp(&colors, range))
 }
 
-/// `ImageJ`'s colour table as text: rows of red, green and blue, perhaps behind the entry's number.
+/// Reads an `ImageJ` colour table in text form: rows of red, green and blue, optionally after the entry's index.
 pub(crate) fn from_rows(text: &str, range: ValueRange) -> Result<TransferFunction, ExchangeError> {
     let row = |line: &str| {
         let numbers: Option<Vec<u8>> = line
@@ -98,7 +98,7 @@ pub(crate) fn from_rows(text: &str, range: ValueRange) -> Result<TransferFunctio
         let first = numbers.len().checked_sub(3)?;
         (first <= 1).then(|| [numbers[first], numbers[first + 1], numbers[first + 2]])
     };
-    // A first line of words names the columns.
+    // Lines that are not numbers, such as a heading, are skipped.
     let colors: Vec<[u8; 3]> = text.lines().filter_map(row).collect();
     if colors.len() != TABLE {
         return Err(form(&format!("{} rows of three bytes were found, a table has 256", colors.len())));
@@ -106,7 +106,7 @@ pub(crate) fn from_rows(text: &str, range: ValueRange) -> Result<TransferFunctio
     Ok(ramp(&colors, range))
 }
 
-/// The colours of a table over a range, more and more opaque.
+/// Builds a transfer function with the table's colours over a range and a linear opacity ramp.
 fn ramp(colors: &[[u8; 3]], range: ValueRange) -> TransferFunction {
     let last = colors.len() - 1;
     let point = |at: usize| {
@@ -118,7 +118,7 @@ fn ramp(colors: &[[u8; 3]], range: ValueRange) -> TransferFunction {
     TransferFunction { points: places.map(point).collect(), ..TransferFunction::default() }
 }
 
-/// 256 colours as bytes: reds, greens, blues. Opacities have no place in it.
+/// Writes 256 colours as bytes: all reds, all greens, all blues. The format has no opacities.
 pub(crate) fn to_lut(function: &TransferFunction, range: ValueRange) -> Vec<u8> {
     let last = (TABLE - 1) as f64;
     let colors: Vec<[f64; 3]> =

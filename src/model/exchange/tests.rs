@@ -1,4 +1,4 @@
-//! Files of other programs: read, refused, and written so that they can be read back.
+//! Tests of the exchange formats: reading, rejecting, and round trips.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ fn read(name: &str, bytes: &[u8]) -> Result<TransferFunction, String> {
     import(Path::new(name), bytes, RANGE).map_err(|err| err.to_string())
 }
 
-/// Everything that a function can have: jumps, smooth ways, colours mixed as they are seen.
+/// Returns a function with every feature: jumps, smooth segments, colours mixed in Oklab.
 fn rich() -> TransferFunction {
     let point =
         |value, color, opacity, easing| ControlPoint { easing, ..ControlPoint::new(value, color, opacity) };
@@ -32,20 +32,20 @@ fn rich() -> TransferFunction {
 #[test]
 fn what_is_written_is_read_back() {
     for (name, opacity_apart, color_apart) in [
-        // A smooth way by eight straight ones is off by less than 1/64 of its height; colours that are mixed as
-        // they are seen, by a little more.
+        // A smooth segment in eight linear pieces is off by less than 1/64 of its height; colours mixed in Oklab, by
+        // a little more.
         ("a.json", 0.012, 0.03),
         ("a.vp", 0.012, 0.03),
         ("a.vp.json", 0.012, 0.03),
         ("a.itf", 0.012, 0.03),
         ("a.preset.json", 1e-9, 1e-6),
-        // Bytes, also as places.
+        // Positions are bytes, too.
         ("a.clut", 0.03, 0.06),
     ] {
         let before = rich();
         let after = read(name, &export(Path::new(name), &before, RANGE).unwrap()).unwrap();
         for step in 0..=100 {
-            // Beside the jumps.
+            // Values away from the jumps.
             let value = -995.0 + f64::from(step) * 19.9;
             if [-200.0, 100.0].iter().any(|jump: &f64| (value - jump).abs() < 12.0) {
                 continue;
@@ -107,7 +107,7 @@ fn voreens_keys_with_splits_and_thresholds() {
     assert_eq!(function.points[2].color, [1.0, 0.0, 0.2]);
     let own = file(r#"<domain x="0" y="4000" />"#, r#"<threshold x="0.1" y="1" />"#);
     let function = read("a.tfi", own.as_bytes()).unwrap();
-    // Below the threshold there is nothing, and from it on what there was.
+    // Opacity is 0 below the threshold, and unchanged above it.
     assert_eq!((function.opacity_at(399.0), function.points.last().unwrap().value), (0.0, 2000.0));
     assert!((function.opacity_at(401.0) - 0.2 * (1.0 - 401.0 / 2000.0)).abs() < 1e-9);
     let band = r#"<TransFuncIntensity><threshold x="0.3" y="0.7" /><Keys>
@@ -161,7 +161,7 @@ fn what_is_not_straight_elsewhere_gets_more_points() {
         let apart = (after.opacity_at(value) - before.opacity_at(value)).abs();
         assert!(apart < 0.01, "{value}: {apart}");
     }
-    // A jump at the end is still one among bytes.
+    // A jump at the end remains one in byte positions.
     let mut plateau = TransferFunction { interpolation: Interpolation::Opacity, ..before };
     plateau.points.insert(1, ControlPoint { easing: Easing::Step, ..point(50.0, 0.8) });
     plateau.points[2].opacity = 0.0;
@@ -321,7 +321,7 @@ fn files_that_are_longer_than_functions_are_not_made_into_trees() {
     let long = format!("{{\"transfer\": {{\"points\": [{}{{}}]}}}}", "0,".repeat(MOST_JSON / 2));
     let refused = import(Path::new("a.json"), long.as_bytes(), ValueRange::UNIT).unwrap_err().to_string();
     assert!(refused.contains("longer than any transfer function"), "{refused}");
-    // And so is what has more points than anybody sets.
+    // So is a function with more points than are allowed.
     let point = "{\"value\":0,\"opacity\":0.5}";
     let many =
         format!("{{\"transfer\": {{\"points\": [{}{point}]}}}}", format!("{point},").repeat(MAX_POINTS));

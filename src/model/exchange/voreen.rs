@@ -1,5 +1,5 @@
-//! Voreen's transfer functions (`.tfi`, XML): keys at shares of a domain, with colours as bytes to their left
-//! and to their right, which differ where the key is split.
+//! Import of Voreen transfer functions (`.tfi`, XML): keys at fractions of a domain, with byte colours on the left
+//! and on the right, which differ where the key is split.
 
 use roxmltree::Node;
 
@@ -20,7 +20,7 @@ pub(crate) fn from_tfi(text: &str, range: ValueRange) -> Result<TransferFunction
         let node = document.get_node(child(function, name)?)?;
         ValueRange::spread(number(node, "x").ok()?, number(node, "y").ok()?)
     };
-    // Without a domain of its own it goes with the data; 0 … 1 stands for that, too.
+    // Without a domain the function refers to the range of the data; a domain of 0 … 1 means that as well.
     let domain = pair("domain").filter(|domain| *domain != ValueRange::UNIT).unwrap_or(range);
     let threshold = pair("threshold").unwrap_or(ValueRange::UNIT);
     let mut points = Vec::new();
@@ -49,7 +49,7 @@ pub(crate) fn from_tfi(text: &str, range: ValueRange) -> Result<TransferFunction
     Ok(between(&function, ValueRange::new(domain.at(threshold.low), domain.at(threshold.high))))
 }
 
-/// What is left of a function between thresholds.
+/// Returns the function clipped to the values between two thresholds, with jumps to opacity 0 at both.
 fn between(function: &TransferFunction, kept: ValueRange) -> TransferFunction {
     let ValueRange { low: from, high: to } = kept;
     let begins = function.points.first().is_some_and(|first| first.value < from);

@@ -1,18 +1,18 @@
-//! What becomes of a look when its volume is corrected: lengths and values that it names go along, so that the same part
-//! of the object is seen as it was.
+//! Adapting a look to corrections of its volume: lengths and data values in the settings are converted, so that the
+//! image keeps showing the same part of the object.
 
 use crate::data::{Corrections, ValueRange, ValueScale, Volume};
 use crate::model::{DensityRange, LabelTable, Length, Settings};
 
-/// Digits of a length that is brought along: there and back again, it is what it was.
+/// Significant digits of a converted length, so that converting there and back gives the original number.
 const DIGITS: usize = 12;
 
-/// Whole numbers up to here are exact as 64-bit numbers.
+/// Largest integer up to which every integer is exact in f64.
 const LARGEST_LABEL: f64 = (1_i64 << 53) as f64;
 
 impl Settings {
-    /// Corrects the volume otherwise than it is in these settings. Lengths in millimetres are the same shares of it then,
-    /// and values mean the same numbers of the file.
+    /// Applies other corrections to the volume. Lengths in millimetres keep their share of the volume's size, and
+    /// data values keep referring to the same numbers in the file.
     pub fn correct(&mut self, corrections: Corrections, volume: &Volume) {
         let before = std::mem::replace(&mut self.volume, corrections);
         self.volume.sanitise();
@@ -26,7 +26,7 @@ impl Settings {
         self.rescale(before.value_scale, self.volume.value_scale);
     }
 
-    /// Brings values along to another scale.
+    /// Converts data values from one value scale to another.
     fn rescale(&mut self, before: ValueScale, after: ValueScale) {
         if before == after {
             return;
@@ -37,7 +37,7 @@ impl Settings {
                 point.value = moved(point.value);
             }
             if before.slope.signum() != after.slope.signum() {
-                // Points at the same value are steps, which run the other way now.
+                // Points at the same value are jumps, whose direction is reversed now.
                 function.points.reverse();
             }
             function.sort();
@@ -54,7 +54,7 @@ impl Settings {
     }
 }
 
-/// A number with as many digits as survive a few multiplications.
+/// Rounds to as many digits as survive a few multiplications.
 fn rounded(number: f64) -> f64 {
     format!("{number:.*e}", DIGITS - 1).parse().unwrap_or(number)
 }

@@ -1,31 +1,31 @@
-//! Parts of the volume that are left out: a box and a plane, each for the eye, for the light or for both.
+//! Clipping of the volume by a crop box and a plane, each for the eye, for the light or for both.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use crate::math::{Bounds, HalfSpace, Region, SceneSpace};
 
-/// The largest distance of a clip plane from the middle: that of a cube's corner, √3, and some room.
+/// Largest distance of a clip plane from the centre, in scene units: that of a cube's corner, √3, with a margin.
 pub const MAX_PLANE_OFFSET: f64 = 2.0;
 
-/// A crop box is never thinner than this share of the volume.
+/// Smallest extent of a crop box along an axis, as a fraction of the volume.
 pub const MIN_CROP: f64 = 0.001;
 
-/// What becomes of the part that is cut away.
+/// Effect of clipping on the part that is cut away.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CutEffect {
-    /// It is not seen, and casts no shadow.
+    /// Invisible, and casts no shadow.
     #[default]
     Removed,
-    /// It is not seen, but still casts its shadow.
+    /// Invisible, but still casts its shadow.
     Hidden,
-    /// It is seen, but casts no shadow.
+    /// Visible, but casts no shadow.
     Shadowless,
 }
 
 impl CutEffect {
-    /// All of them, in the order in which they are offered.
+    /// All effects, in the order of menus.
     pub const ALL: [Self; 3] = [Self::Removed, Self::Hidden, Self::Shadowless];
 
     fn hides(self) -> bool {
@@ -37,17 +37,17 @@ impl CutEffect {
     }
 }
 
-/// A box along the axes of the grid; what lies outside is cut away.
+/// Crop box along the axes of the grid; everything outside is cut away.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct CropBox {
-    /// Whether it cuts.
+    /// Enables clipping by the box.
     pub on: bool,
-    /// Where it begins along each axis, as a share of the grid: 0 … 1.
+    /// Lower bound along each axis, as a fraction of the grid: 0 … 1.
     pub low: [f64; 3],
-    /// Where it ends.
+    /// Upper bound along each axis, as a fraction of the grid: 0 … 1.
     pub high: [f64; 3],
-    /// What becomes of the rest.
+    /// Effect on the part outside the box.
     pub effect: CutEffect,
 }
 
@@ -57,51 +57,52 @@ impl Default for CropBox {
     }
 }
 
-/// A plane; what lies in front of it, where its normal points, is cut away.
+/// Clip plane; everything on the side to which its normal points is cut away.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ClipPlane {
-    /// Whether it cuts.
+    /// Enables clipping by the plane.
     pub on: bool,
-    /// In scene space; its length means nothing.
+    /// Normal in scene space; its length is ignored.
     pub normal: [f64; 3],
-    /// Distance from the middle of the volume along the normal, in scene units.
+    /// Distance from the centre of the volume along the normal, in scene units.
     pub offset: f64,
-    /// What becomes of the part in front.
+    /// Effect on the part in front of the plane.
     pub effect: CutEffect,
 }
 
 impl Default for ClipPlane {
     fn default() -> Self {
-        // The half that is nearer to the eye of the first look.
+        // Cuts away the half that is nearer to the default camera.
         Self { on: false, normal: [0.0, -1.0, 0.0], offset: 0.0, effect: CutEffect::Removed }
     }
 }
 
 impl ClipPlane {
-    /// The normal, of length 1.
+    /// Returns the normal as a unit vector.
     pub fn unit_normal(&self) -> DVec3 {
         DVec3::from(self.normal).normalize_or(DVec3::NEG_Y)
     }
 
-    /// Turns it on, across a direction (to the eye, say) and through a point of the scene.
+    /// Enables the plane and places it perpendicular to a direction (to the camera, say), through a point of the
+    /// scene.
     pub fn face(&mut self, direction: DVec3, through: DVec3) {
         let normal = direction.normalize_or(DVec3::NEG_Y);
         *self = Self { on: true, normal: normal.into(), offset: normal.dot(through), effect: self.effect };
     }
 }
 
-/// What is left out of a picture.
+/// Clipping settings of an image.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Cuts {
-    /// A box along the grid's axes.
+    /// Crop box along the grid's axes.
     pub crop: CropBox,
-    /// One free plane.
+    /// Clip plane with a free orientation.
     pub plane: ClipPlane,
 }
 
-/// What remains for one of the passes.
+/// Part of the volume that is left after clipping, for the eye or for the light.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Remains {
     crop: Option<[[f64; 3]; 2]>,
@@ -109,12 +110,12 @@ pub struct Remains {
 }
 
 impl Cuts {
-    /// What the eye sees.
+    /// Returns the part of the volume that is visible.
     pub fn seen(&self) -> Remains {
         self.remains(CutEffect::hides)
     }
 
-    /// What attenuates light.
+    /// Returns the part of the volume that attenuates light.
     pub fn shading(&self) -> Remains {
         self.remains(CutEffect::lets_light_pass)
     }
@@ -130,13 +131,13 @@ impl Cuts {
 }
 
 impl Remains {
-    /// Whether nothing is cut away.
+    /// Returns true if nothing is cut away.
     pub fn is_everything(&self) -> bool {
         *self == Self::default()
     }
 
-    /// What remains, in index space. Faces at the border of the grid cut nothing, so that what the kernel spreads
-    /// beyond it stays.
+    /// Returns the remaining part in index space. Faces at the border of the grid cut nothing, because the kernel
+    /// spreads material beyond it.
     pub fn region(&self, scene: &SceneSpace) -> Region {
         let mut region = Region::EVERYTHING;
         if let Some([low, high]) = self.crop {

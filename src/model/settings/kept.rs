@@ -1,4 +1,4 @@
-//! Views and looks that somebody keeps beside the picture: they are no part of it.
+//! Saved views and looks of a session; they do not affect the image.
 
 use std::sync::Arc;
 
@@ -7,52 +7,52 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use crate::data::{Corrections, single_line};
 use crate::model::{Camera, MAX_NAME, Settings};
 
-/// How many views and looks can be kept: as many as a strip of small pictures shows at a glance, with some scrolling.
+/// Largest number of saved views and looks: as many as a strip of thumbnails shows at a glance, with some scrolling.
 pub const MAX_KEPT: usize = 32;
 
-/// Bytes that all of them may have in a session: a fifth of what a session may have. A look of a few materials takes
-/// four thousand; one of a thousand labels would take all of it.
+/// Largest total size of saved entries in a session, in bytes: a fifth of a session's limit. A look of a few
+/// materials takes four thousand; one of a thousand labels would take all of it.
 pub const MAX_KEPT_BYTES: usize = 1 << 18;
 
-/// The digits that can go to a kept view or look.
+/// Digit keys that can be assigned to saved views and looks.
 pub const DIGITS: std::ops::RangeInclusive<u8> = 1..=9;
 
-/// A view or a look that is kept, under a name.
+/// Saved view or look with a name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Kept {
-    /// What the user calls it.
+    /// Name given by the user.
     pub name: String,
-    /// The digit that goes to it.
+    /// Digit key that recalls the entry.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub digit: Option<u8>,
-    /// What is kept.
+    /// Saved content: a view or a look.
     pub what: KeptThing,
 }
 
-/// What can be kept.
+/// Content of a saved entry.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum KeptThing {
-    /// Where the eye is.
+    /// View: the camera alone.
     View(Camera),
-    /// What things look like, and from where that was seen.
+    /// Complete look, including its camera.
     Look(KeptLook),
 }
 
-/// Settings that are kept beside others: without anything kept in them, in range, and without what belongs to a file.
-/// Copies share one value, so that steps of a history cost nothing.
+/// Settings of a saved look: without saved entries of their own, within range, and without corrections, which belong
+/// to a file. Copies share one allocation, so that steps of the undo history cost nothing.
 #[derive(Debug, Clone)]
 pub struct KeptLook(Arc<Settings>);
 
 impl KeptLook {
-    /// A look as it is.
+    /// Saves a copy of a look.
     pub fn new(look: &Settings) -> Self {
         let mut look = Settings { kept: Vec::new(), volume: Corrections::default(), ..look.clone() };
         look.sanitise();
         Self(Arc::new(look))
     }
 
-    /// The settings.
+    /// Returns the settings of the look.
     pub fn settings(&self) -> &Settings {
         &self.0
     }
@@ -77,17 +77,17 @@ impl<'de> Deserialize<'de> for KeptLook {
 }
 
 impl Kept {
-    /// A view, without a digit.
+    /// Creates a saved view without a digit key.
     pub fn view(name: impl Into<String>, camera: &Camera) -> Self {
         Self { name: name.into(), digit: None, what: KeptThing::View(camera.clone()) }
     }
 
-    /// A look, without a digit.
+    /// Creates a saved look without a digit key.
     pub fn look(name: impl Into<String>, look: &Settings) -> Self {
         Self { name: name.into(), digit: None, what: KeptThing::Look(KeptLook::new(look)) }
     }
 
-    /// From where it was seen.
+    /// Returns the camera of the view or look.
     pub fn camera(&self) -> &Camera {
         match &self.what {
             KeptThing::View(camera) => camera,
@@ -95,7 +95,7 @@ impl Kept {
         }
     }
 
-    /// The look, if it is one.
+    /// Returns the settings if the entry is a look.
     pub fn as_look(&self) -> Option<&Settings> {
         match &self.what {
             KeptThing::View(_) => None,
@@ -103,7 +103,7 @@ impl Kept {
         }
     }
 
-    /// From where it was seen, if it is no look.
+    /// Returns the camera if the entry is a view.
     pub(super) fn as_view_mut(&mut self) -> Option<&mut Camera> {
         match &mut self.what {
             KeptThing::View(camera) => Some(camera),
@@ -111,14 +111,14 @@ impl Kept {
         }
     }
 
-    /// Bytes that it takes in a session.
+    /// Returns the size of the entry in a session, in bytes.
     fn bytes(&self) -> usize {
         serde_json::to_string_pretty(self).map_or(usize::MAX, |text| text.len())
     }
 }
 
 impl Settings {
-    /// Keeps something beside the picture; whether there was room for it.
+    /// Saves an entry; returns false if it does not fit.
     pub fn keep(&mut self, kept: Kept) -> bool {
         let bytes: usize = self.kept.iter().map(Kept::bytes).sum();
         let has_room = self.kept.len() < MAX_KEPT && bytes.saturating_add(kept.bytes()) <= MAX_KEPT_BYTES;
@@ -128,7 +128,7 @@ impl Settings {
         has_room
     }
 
-    /// Keeps something in the place of something else; whether there was room for it.
+    /// Replaces the content of an entry; returns false if it does not fit.
     pub fn keep_instead(&mut self, at: usize, what: KeptThing) -> bool {
         let Some(kept) = self.kept.get(at) else { return false };
         let instead = Kept { what, ..kept.clone() };
@@ -146,7 +146,7 @@ impl Settings {
         has_room
     }
 
-    /// Leaves out what is kept beyond the bytes that there may be; how many that were.
+    /// Removes entries that do not fit into [`MAX_KEPT_BYTES`], and returns their number.
     pub(in crate::model) fn bound_kept(&mut self) -> usize {
         let (before, mut bytes) = (self.kept.len(), 0_usize);
         self.kept.retain(|kept| {
@@ -158,12 +158,12 @@ impl Settings {
         before - self.kept.len()
     }
 
-    /// What a digit goes to.
+    /// Returns the entry that a digit key recalls.
     pub fn kept_under(&self, digit: u8) -> Option<&Kept> {
         self.kept.iter().find(|kept| kept.digit == Some(digit))
     }
 
-    /// Keeps a view under a digit, in the place of the view that this went to; whether there was room for it.
+    /// Saves the current view under a digit key and replaces the view that had it; returns false if it does not fit.
     pub fn keep_view_under(&mut self, digit: u8, name: impl Into<String>) -> bool {
         let camera = self.camera.clone();
         if let Some(kept) = self.kept.iter_mut().find(|kept| kept.digit == Some(digit)) {
@@ -171,13 +171,13 @@ impl Settings {
                 *view = camera;
                 return true;
             }
-            // A look goes on being kept, without the digit.
+            // A look stays saved, without the digit key.
             kept.digit = None;
         }
         self.keep(Kept { digit: Some(digit), ..Kept::view(name, &camera) })
     }
 
-    /// Brings what is kept within bounds.
+    /// Clamps names, digit keys and the number of entries to their limits.
     pub(super) fn sanitise_kept(&mut self) {
         self.kept.truncate(MAX_KEPT);
         let mut taken = Vec::new();
@@ -204,7 +204,7 @@ mod tests {
         assert_eq!(settings.kept.len(), 1, "in its place");
         let kept = settings.kept_under(3).unwrap();
         assert_eq!((kept.name.as_str(), kept.camera().azimuth_deg), ("front", 77.0));
-        // A look is not lost for a view.
+        // A look is not replaced by a view.
         let look = Kept { digit: Some(4), ..Kept::look("bone", &settings) };
         assert!(settings.keep(look) && settings.keep_view_under(4, "side"));
         assert_eq!(settings.kept.iter().map(|kept| kept.digit).collect::<Vec<_>>(), [Some(3), None, Some(4)]);
@@ -229,7 +229,7 @@ mod tests {
         let back = other.with_look(look);
         assert_eq!(back.shadows.gain, settings.shadows.gain);
         assert_eq!((&back.camera, &back.kept, &back.volume), (&other.camera, &other.kept, &other.volume));
-        // Also where a file says otherwise, one in the other without end.
+        // This also holds for a file that nests looks without end.
         let mut tree = serde_json::to_value(&settings).unwrap();
         tree["kept"][1]["what"]["look"]["kept"] = tree["kept"].clone();
         let read: Settings = serde_json::from_value(tree).unwrap();
@@ -252,7 +252,7 @@ mod tests {
         let (mut replaced, small) = (settings.clone(), settings.clone());
         assert!(!replaced.keep_instead(1, kept.what.clone()) && replaced == small);
         assert!(replaced.keep_instead(1, KeptThing::View(small.camera.clone())) && replaced != small);
-        // From a file of somebody else.
+        // Entries from a file that another program wrote.
         wide.kept = vec![small.kept[0].clone(), kept, small.kept[1].clone()];
         assert_eq!((wide.bound_kept(), wide.kept.len()), (1, 2));
         assert!(crate::model::to_json(&settings).len() < crate::model::MAX_LOOK_BYTES);

@@ -1,4 +1,4 @@
-//! What labels look like: a table by their numbers instead of a curve over values.
+//! Label table: name, colour, opacity and visibility by label number, in place of a transfer function over values.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -12,39 +12,39 @@ use crate::model::{
     TransferFunction, category,
 };
 
-/// Opacity of a label that nobody has chosen one for: it hides what is behind it within a voxel or two.
+/// Default opacity of a label: it hides the material behind it within a voxel or two.
 const OPACITY: f64 = 0.9;
 
-/// A class is around its number: from halfway to the one below on.
+/// Half the width of a class around its number.
 const HALF: f64 = 0.5;
 
-/// What a label looks like.
+/// Appearance of a label.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LabelLook {
-    /// What it is called; may be empty.
+    /// Display name; may be empty.
     pub name: String,
-    /// sRGB, 0 … 1.
+    /// Colour as sRGB, 0 … 1.
     pub color: [f32; 3],
-    /// Per opacity unit, 0 … 1.
+    /// Opacity per opacity unit, 0 … 1.
     pub opacity: f64,
-    /// Whether there is any material.
+    /// Shows the label; hidden ones have no material.
     pub visible: bool,
 }
 
 impl LabelLook {
-    /// The look of a label that nobody has given one: the colour of its number; 0 and what is below is what is around
-    /// the labels.
+    /// Returns the default look of a label: the colour of its number. Numbers of 0 and below are background and
+    /// hidden.
     pub fn of(number: i64) -> Self {
         Self { name: String::new(), color: category(number), opacity: OPACITY, visible: number > 0 }
     }
 
-    /// How opaque it is drawn.
+    /// Returns the opacity used for rendering: 0 if hidden.
     pub fn drawn_opacity(&self) -> f64 {
         if self.visible { self.opacity } else { 0.0 }
     }
 }
 
-/// The parts of a look that a file names.
+/// Partial look as a file gives it; missing parts keep their defaults.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 struct Named {
@@ -54,10 +54,9 @@ struct Named {
     visible: Option<bool>,
 }
 
-/// Looks by the number that voxels hold, at most [`MAX_POINTS`]; labels without an entry look like [`LabelLook::of`].
+/// Looks by label number, at most [`MAX_POINTS`]; labels without an entry have the look of [`LabelLook::of`].
 ///
-/// In JSON an object with the numbers as keys; an entry need not name all of a look. Copies share
-/// the entries.
+/// In JSON an object with the numbers as keys; an entry may omit parts of a look. Copies share the entries.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 #[serde(from = "Option<BTreeMap<i64, Named>>", into = "BTreeMap<i64, LabelLook>")]
 pub struct LabelTable(Arc<BTreeMap<i64, LabelLook>>);
@@ -98,44 +97,44 @@ impl FromIterator<(i64, LabelLook)> for LabelTable {
 }
 
 impl LabelTable {
-    /// Whether there is no table: volumes are shown by their values.
+    /// Returns true if the table has no entries: volumes are then shown by their values.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// How many entries it has.
+    /// Returns the number of entries.
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// The entry of a number.
+    /// Returns the entry of a label number.
     pub fn get(&self, number: i64) -> Option<&LabelLook> {
         self.0.get(&number)
     }
 
-    /// All entries, by number.
+    /// Iterates over all entries by number.
     pub fn iter(&self) -> impl Iterator<Item = (i64, &LabelLook)> {
         self.0.iter().map(|(&number, look)| (number, look))
     }
 
-    /// What a label looks like, whether it has an entry or not.
+    /// Returns the look of a label: its entry or the default.
     pub fn look(&self, number: i64) -> Cow<'_, LabelLook> {
         self.get(number).map_or_else(|| Cow::Owned(LabelLook::of(number)), Cow::Borrowed)
     }
 
-    /// The entry of a number, to be changed; made if there is none.
+    /// Returns the entry of a label number for changes; creates it if missing.
     pub fn entry(&mut self, number: i64) -> &mut LabelLook {
         Arc::make_mut(&mut self.0).entry(number).or_insert_with(|| LabelLook::of(number))
     }
 
-    /// Changes every entry.
+    /// Applies a change to every entry.
     pub fn for_each(&mut self, change: impl Fn(i64, &mut LabelLook)) {
         for (&number, look) in Arc::make_mut(&mut self.0).iter_mut() {
             change(number, look);
         }
     }
 
-    /// The table without what labels are called.
+    /// Returns the table with all names empty.
     #[must_use]
     pub fn unnamed(&self) -> Self {
         if self.0.values().all(|look| look.name.is_empty()) {
@@ -146,7 +145,7 @@ impl LabelTable {
             .collect()
     }
 
-    /// What pictures are made from: of each entry number, colour and opacity, without what it is called.
+    /// Returns number, colour and opacity of each entry, without names: the part that affects the image.
     pub fn materials(&self) -> Vec<LabelMaterial> {
         let material = |(number, look): (i64, &LabelLook)| LabelMaterial {
             number,
@@ -156,8 +155,8 @@ impl LabelTable {
         self.iter().map(material).collect()
     }
 
-    /// A curve of steps over the classes of labels: from half a class below to half a class above there is the look of
-    /// the label that stands for it.
+    /// Returns a step function over the classes of labels: between half a class below and half a class above, it has
+    /// the look of the label that represents the class.
     pub fn curve(&self, labels: &LabelSet) -> TransferFunction {
         let step = |class: usize| {
             let look = self.look(labels.first_of_class(class).number);
@@ -168,7 +167,7 @@ impl LabelTable {
         TransferFunction { points, interpolation: Interpolation::Opacity, mixing: Mixing::Light }
     }
 
-    /// Cuts names and the table to lengths that can be shown, and brings numbers into their ranges.
+    /// Truncates names and the table to their largest lengths, and clamps numbers to their ranges.
     pub(super) fn sanitise(&mut self) {
         let is_sane = |look: &LabelLook| {
             (0.0..=1.0).contains(&look.opacity)
@@ -190,32 +189,32 @@ impl LabelTable {
     }
 }
 
-/// What a picture shows of a label.
+/// Rendered colour and opacity of a label.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LabelMaterial {
-    /// What voxels hold.
+    /// Label number stored in the voxels.
     pub number: i64,
-    /// sRGB, 0 … 1.
+    /// Colour as sRGB, 0 … 1.
     pub color: [f32; 3],
-    /// Per opacity unit; 0 where it is hidden.
+    /// Opacity per opacity unit; 0 if hidden.
     pub opacity: f64,
 }
 
 impl Settings {
-    /// What densities stand for in pictures of a volume with these values.
+    /// Returns the meaning of densities in images of a volume with these value ranges: values or label classes.
     pub fn shown(&self, ranges: &ValueRanges) -> Shown {
         if self.labels.is_empty() { Shown::Range(self.shown_range(ranges)) } else { Shown::Labels }
     }
 
-    /// When the transfer function is applied. Between two labels there is none of the numbers between them: they are
-    /// always classified first.
+    /// Returns the order of classification and interpolation. Labels are always classified first, because numbers
+    /// between two labels mean nothing.
     pub fn classification(&self) -> Classification {
         if self.labels.is_empty() { self.sampling.classification } else { Classification::Pre }
     }
 
-    /// The settings as a volume is drawn with them: where it is shown by labels, the curve of the eye is made of their
-    /// looks, over their classes; light meets the same, and voxels are classified before they are spread. Keys are the
-    /// same as before.
+    /// Returns the settings as used for rendering a volume: if it is shown by labels, the transfer function is made
+    /// of their looks over their classes, light uses the same, and voxels are classified before they are spread. Keys
+    /// do not change.
     pub fn as_drawn(&self, volume: &Volume) -> Cow<'_, Self> {
         if self.labels.is_empty() {
             return Cow::Borrowed(self);
@@ -237,7 +236,7 @@ mod tests {
     use glam::DVec3;
     use half::f16;
 
-    /// A volume with these labels in a row.
+    /// Creates a volume with the given labels in a row.
     fn volume(numbers: Vec<i32>) -> Volume {
         let dims = [numbers.len(), 1, 1];
         Volume::with_spacing("t", dims, DVec3::ONE, Samples::I32(numbers)).unwrap().showing(Shown::Labels)
@@ -251,7 +250,7 @@ mod tests {
         Settings { labels, opacity_unit: Length::Mm(1.0), ..Settings::default() }
     }
 
-    /// A look that no other number has.
+    /// Returns a look that is unique to a number.
     fn unmistakable(number: i64) -> LabelLook {
         let share = |by: i64| ((number * by).rem_euclid(251) as f32 + 1.0) / 256.0;
         let opacity = f64::from(share(101));
@@ -311,7 +310,7 @@ mod tests {
         let volume = volume(vec![0, 1, 2]);
         let mut settings =
             with([(2, LabelLook { visible: false, ..LabelLook::of(2) })].into_iter().collect());
-        // A curve for light makes no sense over labels.
+        // A lighting curve makes no sense over labels.
         settings.lighting.linked = false;
         settings.lighting.scale = 0.5;
         let drawn = settings.as_drawn(&volume);
@@ -325,7 +324,7 @@ mod tests {
         assert_eq!(settings.classification(), Classification::Pre);
         assert_eq!(drawn.sampling.classification, Classification::Pre);
         assert_eq!(settings.over(crate::data::ValueRange::new(-5.0, 5.0), &volume.ranges()), settings);
-        // Once drawn, it stays as it is.
+        // Applying it twice changes nothing.
         assert_eq!(drawn.as_drawn(&volume), drawn);
     }
 
@@ -335,7 +334,7 @@ mod tests {
         let settings = Settings::default();
         assert!(matches!(settings.as_drawn(&volume), Cow::Borrowed(same) if *same == settings));
         assert_eq!(settings.shown(&volume.ranges()), Shown::Range(volume.ranges().robust));
-        // Nor where there are no labels to be looked up.
+        // Nor for a volume without labels.
         let fields = Volume::with_spacing("t", [2, 1, 1], DVec3::ONE, Samples::F32(vec![0.0, 0.5])).unwrap();
         let settings = with([(1, LabelLook::of(1))].into_iter().collect());
         assert!(matches!(settings.as_drawn(&fields), Cow::Borrowed(_)));

@@ -1,37 +1,36 @@
-//! Lengths that can follow the volume.
+//! Lengths in millimetres, voxels or shares of the volume's extent.
 
 use serde::{Deserialize, Serialize};
 
 use crate::math::SceneSpace;
 
-/// A length, in the unit that travels best.
+/// Length with the unit in which it carries over to other volumes.
 ///
-/// A preset for skulls says millimetres, one for
-/// anything says voxels, a benchmark that must look the same at every resolution says a share of
-/// the volume's longest edge.
+/// A preset for skulls uses millimetres, one for any data uses voxels, and a benchmark that must look the same at
+/// every resolution uses shares of the volume's longest edge.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Length {
-    /// Millimetres.
+    /// Length in millimetres of world space.
     Mm(f64),
-    /// Edges of a cube as large as a voxel.
+    /// Multiples of the edge of a cube with a voxel's volume.
     Voxels(f64),
-    /// Shares of the longest edge of the volume's box.
+    /// Fraction of the longest edge of the volume's box.
     Extent(f64),
 }
 
 impl Length {
-    /// The length in scene units.
+    /// Converts the length to scene units.
     pub fn in_scene(self, scene: &SceneSpace) -> f64 {
         match self {
             Self::Mm(mm) => mm / scene.mm_per_unit,
             Self::Voxels(count) => count * scene.mean_edge(),
-            // The longest edge is two units long.
+            // The longest edge has two scene units.
             Self::Extent(share) => 2.0 * share,
         }
     }
 
-    /// The bare number, whatever the unit.
+    /// Returns the number without its unit.
     pub fn number(self) -> f64 {
         match self {
             Self::Mm(number) | Self::Voxels(number) | Self::Extent(number) => number,

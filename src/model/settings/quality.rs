@@ -1,12 +1,13 @@
-//! How truly light is computed, in one word that stands for several settings.
+//! Quality levels: presets of slab thickness, shadow algorithm, kernels and near field.
 
 use crate::model::{
     Gradients, Kernel, NearField, ReverseKernel, Sampling, Settings, ShadowAlgorithm, Shadows, Slabs,
 };
 
 impl Settings {
-    /// This look, drawn as truly as another one: with its slabs, kernels, normals and light volumes, and by its way to
-    /// shadows where both have any. Classification and the cures for darkness belong to the look.
+    /// Returns this look, rendered at the quality of another: with its slabs, kernels, normals and light volumes, and
+    /// with its shadow algorithm if both have shadows. Classification, and the remedies against dark images, stay
+    /// those of this look.
     #[must_use]
     pub fn drawn_as(self, other: &Self) -> Self {
         let Shadows {
@@ -53,35 +54,36 @@ impl Settings {
     }
 }
 
-/// A level of quality. Settings hold what it stands for, and not the word: a level can be chosen and then refined.
+/// Quality level. Settings store the individual values, not the level, so that they can be changed after it was
+/// chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quality {
-    /// Light volumes alone.
+    /// Light volumes, without near-field rays.
     Fast,
-    /// Light volumes, and short rays near what is seen.
+    /// Light volumes, and short near-field rays.
     Standard,
-    /// Light volumes, and longer rays.
+    /// Light volumes, and longer near-field rays.
     Fine,
-    /// Rays all the way, and the thinnest slabs.
+    /// Rays from every sample to the light, and the thinnest slabs.
     Exact,
 }
 
-/// What a level stands for.
+/// Settings that a quality level sets.
 struct Level {
     algorithm: ShadowAlgorithm,
     near_field: NearField,
-    /// Of the eye, in smallest edges of voxels, and whether all are as thick.
+    /// Thickness of the eye's slabs, in smallest voxel edges; the largest if they are adaptive.
     slab: f64,
     slabs: Slabs,
-    /// Of the light pass or of the rays, likewise.
+    /// Slab thickness of the light pass or step of shadow rays, in smallest voxel edges.
     shadow_slab: f64,
-    /// Of the light pass or of the rays.
+    /// Kernel of the light pass or of shadow rays.
     shadow_kernel: Kernel,
     gradients: Gradients,
 }
 
 impl Quality {
-    /// From the quickest to the truest.
+    /// All levels, from the fastest to the most accurate.
     pub const ALL: [Self; 4] = [Self::Fast, Self::Standard, Self::Fine, Self::Exact];
 
     fn level(self) -> Level {
@@ -91,15 +93,15 @@ impl Quality {
             slab,
             slabs,
             shadow_slab: 1.0,
-            // What it blurs more than the B-spline is less than a light volume does, and a sixth of the fetches.
+            // Its blur beyond the B-spline's is less than that of a light volume, at a sixth of the fetches.
             shadow_kernel: Kernel::Prefiltered,
             gradients: Gradients::Volume,
         };
         match self {
             Self::Fast => splat(NearField::Off, Slabs::Even, 0.5),
-            // Even slabs as thick show on steep surfaces as wood grain.
+            // Even slabs of this thickness show as wood grain on steep surfaces.
             Self::Standard => splat(NearField::Short, Slabs::ByNeed, 1.0),
-            // Thinner slabs come no nearer to the limit.
+            // Thinner slabs do not get closer to the converged image.
             Self::Fine => {
                 Level { gradients: Gradients::Kernel, ..splat(NearField::Long, Slabs::ByNeed, 1.0) }
             }
@@ -115,7 +117,7 @@ impl Quality {
         }
     }
 
-    /// Sets all that the level stands for. Shadows that are off stay off.
+    /// Applies all settings of the level. Disabled shadows stay disabled.
     pub fn apply(self, settings: &mut Settings) {
         let Level { algorithm, near_field, slab, slabs, shadow_slab, shadow_kernel, gradients } =
             self.level();
@@ -130,7 +132,7 @@ impl Quality {
         }
     }
 
-    /// The level that settings are at, if they are at one.
+    /// Returns the level that the settings match, if any.
     pub fn of(settings: &Settings) -> Option<Self> {
         Self::ALL.into_iter().find(|level| {
             let mut applied = settings.clone();

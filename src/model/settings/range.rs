@@ -1,33 +1,33 @@
-//! Which values of a volume a look spends its densities on.
+//! Density range: the range of data values that is mapped to densities of 0 … 1.
 
 use serde::{Deserialize, Serialize};
 
 use crate::data::{ValueRange, ValueRanges};
 use crate::model::Settings;
 
-/// A range is widened in steps of this many to its span: dragging a control point changes it now and then only, which
-/// costs an upload.
+/// Number of steps per span in which the range is widened: dragging a control point changes it only occasionally,
+/// since each change costs an upload.
 const STEPS: f64 = 8.0;
 
-/// Points that are no further than this share of the span beyond an end do not widen the range: they are at it, but for
-/// rounding.
+/// Share of the span by which points may lie beyond an end without widening the range: within rounding, they are at
+/// the end.
 const AT_THE_END: f64 = 0.005;
 
-/// The values that have densities from 0 to 1; what lies outside counts as the nearest of them.
+/// Choice of the values with densities 0 … 1; values outside are clamped.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DensityRange {
-    /// The values that matter, without padding and outliers.
+    /// Robust range: all values without padding and outliers.
     #[default]
     Robust,
-    /// All values of the file.
+    /// Full range of the file's values.
     Full,
-    /// Those between two values, in data units.
+    /// Range between two typed values, in data units.
     Typed(ValueRange),
 }
 
 impl DensityRange {
-    /// The range that is chosen, for a volume with these values.
+    /// Returns the chosen range, for a volume with these value ranges.
     pub fn of(self, ranges: &ValueRanges) -> ValueRange {
         match self {
             Self::Robust => ranges.robust,
@@ -36,7 +36,7 @@ impl DensityRange {
         }
     }
 
-    /// The range as it can be used: ends in order, and apart.
+    /// Returns a usable range: with its ends in order and apart.
     #[must_use]
     pub(super) fn sane(self) -> Self {
         match self {
@@ -50,8 +50,8 @@ impl DensityRange {
 }
 
 impl Settings {
-    /// The values that have densities from 0 to 1 in pictures of a volume with these values: the chosen range, widened by
-    /// control points that lie beyond it, but not beyond the values that there are.
+    /// Returns the values with densities 0 and 1 in images of a volume with these value ranges: the chosen range,
+    /// widened by control points outside it, but not beyond the values of the volume.
     pub fn shown_range(&self, ranges: &ValueRanges) -> ValueRange {
         let chosen = self.range.of(ranges);
         let span = chosen.span();
@@ -75,8 +75,8 @@ impl Settings {
 }
 
 impl Settings {
-    /// The same picture of a volume with these values, with densities for a range that holds those of the look. Labels have
-    /// none.
+    /// Returns settings for the same image of a volume with these value ranges, with densities over a range that
+    /// contains this look's range. No effect on looks of labels.
     #[must_use]
     pub fn over(&self, range: ValueRange, ranges: &ValueRanges) -> Self {
         let own = self.shown_range(ranges);
@@ -84,7 +84,7 @@ impl Settings {
             return self.clone();
         }
         let mut wider = Self { range: DensityRange::Typed(range), ..self.clone() };
-        // Densities change more slowly by as much as there are more values.
+        // Density gradients shrink in proportion to the widened range.
         wider.shading.surface_gradient *= own.span() / range.span();
         wider
     }

@@ -1,4 +1,4 @@
-//! Bringing settings into range, so that nothing typed or loaded can reach a shader as NaN, as a
+//! Sanitising of settings: clamping to valid ranges, so that no typed or loaded value reaches a shader as NaN, as a
 //! negative extinction or as an endless loop.
 
 use crate::data::single_line;
@@ -11,8 +11,8 @@ use crate::model::{
 };
 
 impl Settings {
-    /// Brings every number into its documented range, so that nothing typed or loaded can reach a
-    /// shader as NaN, as a negative extinction or as an endless loop, and names and lists to lengths that can be shown.
+    /// Clamps every number to its documented range, so that no typed or loaded value reaches a shader as NaN, as a
+    /// negative extinction or as an endless loop; truncates names and lists to lengths that can be shown.
     pub fn sanitise(&mut self) {
         let number = |value: &mut f64, low: f64, high: f64, fallback: f64| {
             *value = if value.is_finite() { value.clamp(low, high) } else { fallback };

@@ -1,7 +1,6 @@
-//! What a look may contain, wherever it comes from: it is cut to that while it is read, before anything is built
-//! from it.
+//! Size limits for looks from untrusted sources: excess is cut while JSON is read, before anything is built from it.
 //!
-//! Texts and trees go through the same reader, so that nothing larger than a look ever stands in memory.
+//! Texts and trees go through the same reader, so that nothing larger than a look is ever held in memory.
 
 use std::cell::{Cell, RefCell};
 use std::fmt;
@@ -13,39 +12,39 @@ use super::preset_error::PresetError;
 use crate::data::plain;
 use crate::model::{MAX_KEPT, MAX_KEPT_BYTES, MAX_LIGHTS, MAX_NAME, MAX_POINTS};
 
-/// Bytes of the longest look: a transfer function of [`MAX_POINTS`] points has nearly a mebibyte, written with an item a
-/// line, and there is what is kept beside it.
+/// Largest size of a look's text, in bytes: a transfer function of [`MAX_POINTS`] points takes nearly a mebibyte with
+/// one item per line, and the saved views and looks come in addition.
 pub const MAX_LOOK_BYTES: usize = (1 << 20) + MAX_KEPT_BYTES;
 
-/// Lists and objects in one another: settings have 6 levels.
+/// Largest nesting depth of lists and objects: settings have 6 levels.
 const MAX_DEPTH: usize = 64;
 
-/// Values in a look: two transfer functions have 2 × 4096 points of 8, a table of labels 4096 of 8, and the rest a few
-/// hundred; and what is kept has no more than one for every eight bytes.
+/// Largest number of values in a look: two transfer functions have 2 × 4096 points of 8, a label table 4096 of 8, and
+/// the rest a few hundred; saved views and looks have no more than one value per eight bytes.
 const MAX_VALUES: usize = 140_000 + MAX_KEPT_BYTES / 8;
 
-/// Views that could be kept before they had names: one for each digit.
+/// Largest number of views in the format before they had names: one per digit key.
 const MAX_VIEWS: usize = 9;
 
-/// Characters of a text in a remark, whose name begins with an underscore: the longest paths.
+/// Largest number of characters in a remark (a text whose name begins with an underscore): that of the longest paths.
 const MAX_REMARK: usize = 4096;
 
-/// Cuts that are told one by one.
+/// Largest number of cuts that are reported one by one.
 const MAX_TOLD: usize = 8;
 
-/// A look within its bounds, and what was cut to bring it there.
+/// JSON tree of a look within its limits, with a report of the cuts.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Bounded {
-    /// What is left.
+    /// Tree that is left after the cuts.
     pub(super) tree: Value,
-    /// A sentence for each cut.
+    /// Descriptions of the cuts, a sentence each.
     pub(super) cuts: Vec<String>,
 }
 
-/// Reads the JSON of a look.
+/// Parses the JSON of a look and cuts it to its limits.
 ///
 /// # Errors
-/// When it is longer, deeper or fuller than any look, or is not JSON.
+/// Returns an error if the text is too long, nested too deeply, has too many values, or is not JSON.
 pub(super) fn read(text: &str) -> Result<Bounded, PresetError> {
     if text.len() > MAX_LOOK_BYTES {
         return Err(PresetError::TooLong { bytes: text.len() });
@@ -56,10 +55,10 @@ pub(super) fn read(text: &str) -> Result<Bounded, PresetError> {
     Ok(bounded)
 }
 
-/// Cuts a tree that something else has read.
+/// Cuts a tree that has already been parsed.
 ///
 /// # Errors
-/// When it is deeper or fuller than any look.
+/// Returns an error if it is nested too deeply or has too many values.
 pub(super) fn cut(tree: &Value) -> Result<Bounded, PresetError> {
     cut_from(tree).map_err(PresetError::Form)
 }
@@ -71,7 +70,7 @@ fn cut_from<'de, D: Deserializer<'de>>(source: D) -> Result<Bounded, D::Error> {
     Ok(Bounded { tree, cuts: log.sentences() })
 }
 
-/// What happened so far.
+/// Running count of values, and log of the cuts.
 #[derive(Debug, Default)]
 struct Log {
     values: Cell<usize>,
@@ -95,12 +94,12 @@ impl Log {
     }
 }
 
-/// Where a value stands, which says how long it may be.
+/// Position in the tree, which determines the limits of a value.
 #[derive(Debug)]
 struct Place<'a> {
     path: String,
     depth: usize,
-    /// Characters of texts here.
+    /// Largest number of characters of texts here.
     text: usize,
     log: &'a Log,
 }
@@ -112,13 +111,13 @@ impl Place<'_> {
         Self { path, depth: self.depth + 1, text, log: self.log }
     }
 
-    /// How many items a list or an object may have here.
+    /// Returns the largest number of items of a list or an object here.
     fn most(&self) -> usize {
         match self.path.as_str() {
             "lights" => MAX_LIGHTS,
             "views" => MAX_VIEWS,
             "kept" => MAX_KEPT,
-            // Of transfer functions, tables of labels, and of whatever later versions may have.
+            // Transfer functions, label tables, and settings of later versions.
             _ => MAX_POINTS,
         }
     }
@@ -130,8 +129,10 @@ impl Place<'_> {
         }
     }
 
+    /// Counts a value.
+    ///
     /// # Errors
-    /// When the value is one too many, or too deep.
+    /// Returns an error if there are too many values, or the value is nested too deeply.
     fn enter<E: serde::de::Error>(&self) -> Result<(), E> {
         let values = self.log.values.get() + 1;
         self.log.values.set(values);
@@ -200,7 +201,7 @@ impl<'de> Visitor<'de> for Place<'_> {
             let Some(item) = list.next_element_seed(self.below(&items.len().to_string()))? else {
                 return Ok(Value::Array(items));
             };
-            // One by one: what a list says of its length need not be true.
+            // Reserves items one by one: the length that a list declares may be wrong.
             items.try_reserve(1).map_err(A::Error::custom)?;
             items.push(item);
         }

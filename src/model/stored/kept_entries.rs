@@ -1,11 +1,10 @@
-//! What is kept beside a look, as files have it: one entry that is not understood costs no other.
+//! Reading of saved views and looks: an unreadable entry does not affect the others.
 
 use serde_json::Value;
 
 use crate::model::Kept;
 
-/// Leaves out of what is kept beside a look whatever is none of this version's views and looks: the rest stands. A warning
-/// for each.
+/// Removes the saved views and looks that this version cannot read, and returns a warning for each.
 pub(super) fn leave_out_unreadable(overlay: &mut Value) -> Vec<String> {
     let Some(Value::Array(kept)) = overlay.get_mut("kept") else { return Vec::new() };
     let mut warnings = Vec::new();

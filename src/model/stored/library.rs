@@ -1,21 +1,21 @@
-//! Presets that come with the program: transfer functions and materials by domain.
+//! Built-in presets: transfer functions and materials by domain.
 //!
-//! Values are those of the data where a domain has units (Hounsfield units for CT), else shares of the range that the
-//! look chooses (`"_values": "relative"`). Those of light are for any data: they have a sky, and say whether light bounces.
-//! Those of the paper also say how shadows and sheets are made, as the paper has it, and that of the benchmarks says
-//! everything; by all others camera, lights, shadows and sampling stay as they are.
+//! Values are data values if a domain has units (Hounsfield units for CT), else shares of the look's range
+//! (`"_values": "relative"`). Light presets fit any data: they set a sky and multiple scattering. The paper's also
+//! set shadows and sheets as in the paper, and the benchmark's sets everything; all others leave camera, lights,
+//! shadows and sampling unchanged.
 
 use serde_json::Value;
 
 use crate::data::{DataKind, ValueRanges};
 use crate::model::{PresetError, Settings, apply_json};
 
-/// A preset of the library.
+/// Preset of the built-in library.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Preset {
-    /// `domain/name`, as `--preset` takes it.
+    /// Name on the command line, `domain/name`, as `--preset` takes it.
     pub name: &'static str,
-    /// Name in menus, which no other preset has.
+    /// Title in menus, unique among the presets.
     pub title: &'static str,
     text: &'static str,
 }
@@ -30,7 +30,7 @@ macro_rules! presets {
     };
 }
 
-/// All of them, domain by domain.
+/// All built-in presets, grouped by domain.
 pub const PRESETS: [Preset; 22] = presets![
     "ct/bone": "Bone",
     "ct/muscle_and_skin": "Muscle and skin",
@@ -57,22 +57,22 @@ pub const PRESETS: [Preset; 22] = presets![
 ];
 
 impl Preset {
-    /// The preset of a name.
+    /// Returns the preset with the given name.
     pub fn find(name: &str) -> Option<Self> {
         PRESETS.into_iter().find(|preset| preset.name == name)
     }
 
-    /// The JSON of the preset.
+    /// Returns the JSON text of the preset.
     pub fn text(&self) -> &'static str {
         self.text
     }
 
-    /// The domain, for menus.
+    /// Returns the domain, the first part of the name.
     pub fn domain(&self) -> &'static str {
         self.name.split_once('/').map_or("", |(domain, _)| domain)
     }
 
-    /// What the domain is called over a list.
+    /// Returns the domain's title above a list.
     pub fn domain_title(&self) -> &'static str {
         match self.domain() {
             "ct" => "CT (Hounsfield units)",
@@ -85,19 +85,19 @@ impl Preset {
         }
     }
 
-    /// Whether it has something to show in data of a kind: presets of CT name Hounsfield units, and show nothing or a brick
-    /// of what has other values, those of scanners that count from 1024 among them.
+    /// Returns true if the preset suits the kind of data: CT presets refer to Hounsfield units, and show nothing, or
+    /// a solid block, in other data, including scans whose values are offset by 1024.
     pub fn suits(&self, kind: &DataKind) -> bool {
         self.domain() != "ct" || matches!(kind, DataKind::HounsfieldCt { water } if *water == 0.0)
     }
 
-    /// What it is for.
+    /// Returns the description of the preset.
     pub fn about(&self) -> String {
         let value: Value = serde_json::from_str(self.text).unwrap_or_default();
         value.get("_about").and_then(Value::as_str).unwrap_or_default().to_owned()
     }
 
-    /// Lays it over settings, for a volume with these values.
+    /// Applies the preset to settings, for a volume with the given value ranges.
     ///
     /// # Errors
     /// As [`apply_json`]; a test proves that it does not happen.
@@ -106,14 +106,14 @@ impl Preset {
         apply_relative(settings, &overlay, ranges).map(|(settings, _)| settings)
     }
 
-    /// Whether settings for a volume with these values are as the preset makes them: to lay it over them changes nothing.
+    /// Returns true if applying the preset to the settings would change nothing.
     pub fn is_in_use(&self, settings: &Settings, ranges: &ValueRanges) -> bool {
         self.apply(settings, ranges).is_ok_and(|applied| applied == *settings)
     }
 }
 
-/// As [`apply_json`], for looks whose values may be shares of the range that the look chooses of a volume's values. What is
-/// corrected of a volume stays as it is.
+/// Applies a preset as [`apply_json`] does, with support for relative values, which are shares of the look's range
+/// for a volume with the given value ranges. The volume's corrections are not changed.
 ///
 /// # Errors
 /// As [`apply_json`].
@@ -123,7 +123,7 @@ pub fn apply_relative(
     ranges: &ValueRanges,
 ) -> Result<(Settings, Vec<String>), PresetError> {
     let (mut applied, mut warnings) = apply_json(settings, overlay)?;
-    // A look is of any volume; what is known of a file, of that alone.
+    // A look applies to any volume; corrections apply only to their file.
     let applied_corrections = std::mem::replace(&mut applied.volume, settings.volume);
     if applied_corrections != settings.volume
         && !applied_corrections.is_none()
@@ -172,7 +172,7 @@ mod tests {
             assert_eq!(preset.apply(&Settings::default(), &ranges).unwrap(), settings);
             let points = &settings.transfer.points;
             assert!(points.windows(2).all(|pair| pair[0].value <= pair[1].value), "{}", preset.name);
-            // Light is for any curve.
+            // Light presets work with any curve.
             let is_seen = points.iter().any(|point| point.opacity > 0.05);
             assert!(is_seen || preset.domain() == "light" && settings.sky.is_on(), "{}", preset.name);
             assert!(!preset.about().is_empty() && !preset.title.is_empty() && !preset.domain().is_empty());
@@ -205,7 +205,7 @@ mod tests {
             let mut used = preset.apply(&first, &ranges).unwrap();
             used.sanitise();
             assert!(preset.is_in_use(&used, &ranges), "{}", preset.name);
-            // Where it says nothing of the camera, that may turn.
+            // A preset without a camera allows it to turn.
             used.camera.azimuth_deg += 20.0;
             assert_eq!(preset.is_in_use(&used, &ranges), preset.domain() != "bench", "{}", preset.name);
             for point in &mut used.transfer.points {
@@ -248,7 +248,7 @@ mod tests {
         let (applied, warnings) = apply_relative(&over, &own, &ranges).unwrap();
         assert_eq!((applied.volume, applied.shadows.gain), (over.volume, 2.0));
         assert!(warnings.len() == 1 && warnings[0].contains("`volume`"), "{warnings:?}");
-        // A whole look without corrections has nothing to say of them.
+        // A complete look without corrections does not affect them.
         let whole = serde_json::to_value(Settings::default()).unwrap();
         let (applied, warnings) = apply_relative(&over, &whole, &ranges).unwrap();
         assert_eq!((applied.volume, warnings), (over.volume, Vec::<String>::new()));

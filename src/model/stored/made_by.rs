@@ -1,16 +1,16 @@
-//! The mark that every file of this program carries, by which it is told from files of others.
+//! Provenance mark in every file that Chiaroscuro writes, which identifies the file as its own.
 
 use serde_json::Value;
 
-/// The mark: words that nobody else would write into a file.
+/// Provenance mark: text that other programs would not write.
 pub const MADE_BY: &str = "Chiaroscuro, the volume viewer";
 
-/// Who made a file, for a text in it.
+/// Returns the provenance mark with the version number.
 pub fn made_by() -> String {
     format!("{MADE_BY}, {}", env!("CARGO_PKG_VERSION"))
 }
 
-/// A JSON object that says who made it, before anything else.
+/// Adds the provenance mark as the first field of a JSON object.
 pub fn tells_maker(tree: Value) -> Value {
     match tree {
         Value::Object(fields) => {

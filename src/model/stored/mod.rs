@@ -1,4 +1,4 @@
-//! Looks as text: presets, sessions, the library, and what a picture says of how it was made.
+//! Stored settings: presets, sessions, the preset library, and the records embedded in exported images.
 
 pub(super) mod bounds;
 mod kept_entries;

@@ -1,12 +1,12 @@
-//! Paths as text: nearly all are text, and the rest keep every byte.
+//! Lossless encoding of file paths as text, including names that are not UTF-8.
 //!
-//! On Unix a file's name is any bytes. Those that are no UTF-8 are written with `%` and two hexadecimal digits for
-//! whatever is not plain ASCII, as addresses have it.
+//! On Unix a file's name is any bytes. Paths that are not UTF-8 are percent-encoded: `%` and two hexadecimal digits
+//! for everything but plain ASCII, as in URLs.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// A path that is no text, with every byte; none for one that is text, and where names are no bytes.
+/// Encodes a path that is not UTF-8; `None` if it is UTF-8, or on systems where names are not bytes.
 pub fn encode_path(path: &Path) -> Option<String> {
     if path.to_str().is_some() {
         return None;
@@ -22,7 +22,7 @@ pub fn encode_path(path: &Path) -> Option<String> {
     Some(text)
 }
 
-/// The path that [`encode_path`] has written; none if the text is nothing of that kind.
+/// Decodes a path encoded by [`encode_path`]; `None` if the text is malformed.
 pub fn decode_path(text: &str) -> Option<PathBuf> {
     let mut bytes = Vec::with_capacity(text.len());
     let mut rest = text.bytes();
@@ -35,7 +35,7 @@ pub fn decode_path(text: &str) -> Option<PathBuf> {
     path_of(bytes)
 }
 
-/// The value of a hexadecimal digit.
+/// Returns the value of a hexadecimal digit.
 fn digit(byte: u8) -> Option<u8> {
     char::from(byte).to_digit(16).and_then(|value| u8::try_from(value).ok())
 }

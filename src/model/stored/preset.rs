@@ -1,6 +1,6 @@
-//! Settings as JSON: presets, sessions and `--set`.
+//! JSON format of settings: presets, sessions and `--set`.
 //!
-//! A preset may name only what it cares about; the rest stays as it is. A session names everything.
+//! A preset may contain only some settings; the others stay unchanged. A session contains all of them.
 
 use serde_json::Value;
 
@@ -12,21 +12,21 @@ use super::schemas::{complete, keep_named_balance, lays_labels_anew, shows_value
 use crate::data::plain;
 use crate::model::{LabelLook, LabelTable, MAX_NAME, SCHEMA, Settings};
 
-/// Unknown settings that are told one by one.
+/// Largest number of unknown settings that are reported one by one.
 const MAX_TOLD: usize = 8;
 
-/// Settings as pretty JSON.
+/// Serialises settings as pretty-printed JSON.
 pub fn to_json(settings: &Settings) -> String {
     serde_json::to_string_pretty(settings).unwrap_or_default()
 }
 
-/// Lays a JSON object over settings: objects are merged field by field, everything else replaces.
+/// Applies a JSON object to settings: objects are merged field by field, everything else is replaced.
 ///
-/// Returns the result, in range, and warnings of what was not understood: what is more than a look may have and was
-/// cut, fields that are not known, and a newer version.
+/// Returns the result, sanitised, and warnings: content beyond a look's limits, which was cut, unknown fields, and a
+/// newer version.
 ///
 /// # Errors
-/// When the value is not an object, a field has the wrong type, or there is more of it than of any look.
+/// Returns an error if the value is not an object, a field has the wrong type, or the limits of a look are exceeded.
 pub fn apply_json(settings: &Settings, overlay: &Value) -> Result<(Settings, Vec<String>), PresetError> {
     if !overlay.is_object() {
         return Err(PresetError::NotAnObject);
@@ -61,26 +61,26 @@ pub fn apply_json(settings: &Settings, overlay: &Value) -> Result<(Settings, Vec
     Ok((result, warnings))
 }
 
-/// Reads a preset or session text and lays it over settings; see [`apply_json`].
+/// Parses a preset or session and applies it to settings; see [`apply_json`].
 ///
 /// # Errors
-/// As [`apply_json`], and when the text is not JSON.
+/// As [`apply_json`], and if the text is not JSON.
 pub fn load_json(settings: &Settings, text: &str) -> Result<(Settings, Vec<String>), PresetError> {
     let Bounded { tree, cuts } = bounds::read(text)?;
     let (result, warnings) = apply_json(settings, &tree)?;
     Ok((result, [cuts, warnings].concat()))
 }
 
-/// Sets one value by its path (`shadows.strength`, `lights.0.intensity`). The text is read as JSON
-/// where it is JSON, else as a string.
+/// Sets one value by its path (`shadows.strength`, `lights.0.intensity`). The text is parsed as JSON, or else taken
+/// as a string.
 ///
 /// # Errors
-/// When the path names nothing or the value has the wrong form.
+/// Returns an error if the path does not exist or the value has the wrong type.
 pub fn apply_path(settings: &Settings, path: &str, text: &str) -> Result<Settings, PresetError> {
     assign(settings, path, text).map(|(result, _)| result)
 }
 
-/// As [`apply_path`], with a warning if the value was brought into the setting's range.
+/// Sets one value as [`apply_path`] does, and returns a warning if the value was clamped to its range.
 ///
 /// # Errors
 /// As [`apply_path`].
@@ -90,7 +90,7 @@ pub fn assign(
     text: &str,
 ) -> Result<(Settings, Option<String>), PresetError> {
     let mut tree = serde_json::to_value(settings).map_err(PresetError::Form)?;
-    // It says how a file is to be read, and nothing of how a picture looks.
+    // The schema says how to read a file, and is not a setting of the image.
     tree.as_object_mut().map(|fields| fields.shift_remove("schema"));
     let current = current_path(path);
     let number = current.strip_prefix("labels.").and_then(|rest| rest.split('.').next()?.parse::<i64>().ok());
@@ -127,7 +127,7 @@ pub fn assign(
     *node = serde_json::from_str(text).unwrap_or_else(|_| Value::String(text.to_owned()));
     rename(&current, node);
     let mut result: Settings = serde_json::from_value(tree).map_err(PresetError::Form)?;
-    // As in a preset: whoever names the balance means it.
+    // As in a preset: a balance that is set explicitly is kept.
     result.shadows.keep_balanced &= current != "shadows.balance";
     if current.split('.').next() == Some("transfer") {
         result.labels = LabelTable::default();
@@ -144,8 +144,8 @@ pub fn assign(
     Ok((result, warning))
 }
 
-/// Whether what settings have at a place is an enum, and a key names another of its variants than the one that it is: the
-/// only thing that is refused there with a list of variants is what is none of them.
+/// Returns true if the setting at a path is an enum, and the key is another of its variants. Detected by
+/// deserialising an invalid variant: only an enum responds with a list of its variants.
 fn is_other_variant(settings: &Value, at: &str, key: &str) -> bool {
     let mut tried = settings.clone();
     let Some(node) = tried.pointer_mut(at).filter(|node| node.get(key).is_none()) else { return false };
@@ -157,15 +157,15 @@ fn is_other_variant(settings: &Value, at: &str, key: &str) -> bool {
     })
 }
 
-/// What no variant of an enum is called.
+/// Text that is not the name of any enum variant.
 const NO_VARIANT: &str = "?";
 
-/// A path as JSON pointers are written.
+/// Converts a dotted path to a JSON pointer.
 fn pointer(path: &str) -> String {
     format!("/{}", path.replace('.', "/"))
 }
 
-/// What a setting is, by its path.
+/// Returns the value of a setting by its path.
 fn value_at(settings: &Settings, path: &str) -> Option<Value> {
     let tree = serde_json::to_value(settings).ok()?;
     tree.pointer(&pointer(path)).cloned()
@@ -173,7 +173,7 @@ fn value_at(settings: &Settings, path: &str) -> Option<Value> {
 
 fn merge(base: &mut Value, overlay: &Value) {
     match (base, overlay) {
-        // An enum value with a payload is an object with one key: another key replaces it.
+        // An enum variant with data is an object with one key: another key replaces it.
         (Value::Object(base), Value::Object(overlay)) if !is_tagged_swap(base, overlay) => {
             for (key, value) in overlay {
                 merge(base.entry(key.clone()).or_insert(Value::Null), value);
@@ -183,16 +183,16 @@ fn merge(base: &mut Value, overlay: &Value) {
     }
 }
 
-/// `{"voxels": 1}` laid over `{"mm": 2}`: two variants of one enum, which must not be mixed. Numbers are no variants,
-/// but those of labels.
+/// Returns true for `{"voxels": 1}` over `{"mm": 2}`: two variants of one enum, which must not be merged. Numbers are
+/// not variants, but keys of labels.
 fn is_tagged_swap(base: &serde_json::Map<String, Value>, overlay: &serde_json::Map<String, Value>) -> bool {
     let is_variant = |key: Option<&String>| key.is_some_and(|key| key.parse::<i64>().is_err());
     let (before, after) = (base.keys().next(), overlay.keys().next());
     base.len() == 1 && overlay.len() == 1 && before != after && is_variant(before) && is_variant(after)
 }
 
-/// Lists the paths of what was given and does not come back. Presets may carry remarks under names that begin with an
-/// underscore.
+/// Collects the paths of fields that were given but not understood. Names that begin with an underscore are remarks,
+/// which presets may contain.
 fn list_unknown(given: &Value, understood: &Value, path: &str, unknown: &mut Vec<String>) {
     let below = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
     match (given, understood) {
@@ -282,10 +282,10 @@ mod tests {
         assert_eq!(set("opacity_unit.mm", "2").unwrap().opacity_unit, Length::Mm(2.0));
         let told = assign(&Settings::default(), "range.typed", "[300, -100]").unwrap();
         assert_eq!((told.0.range, told.1.is_some()), (typed, true));
-        // With numbers after one with numbers.
+        // From one variant with a number to another.
         let in_mm = set("opacity_unit.mm", "2").unwrap();
         assert_eq!(apply_path(&in_mm, "opacity_unit.voxels", "3").unwrap().opacity_unit, Length::Voxels(3.0));
-        // What has one entry, or is a text, need not be an enum.
+        // An object with one entry, or a string, need not be an enum.
         let mut one_view = Settings::default();
         assert!(one_view.keep_view_under(3, "front"));
         let camera = serde_json::to_string(&Camera::default()).unwrap();
@@ -338,7 +338,7 @@ mod tests {
         let (settings, warnings) = load_json(&Settings::default(), &text).unwrap();
         assert_eq!((settings.lights.len(), warnings.len()), (MAX_LIGHTS, 1));
         assert_eq!(warnings[0], "60001 entries of `lights` were cut to 8");
-        // Also when something else has read it.
+        // This holds for an already parsed tree, too.
         let tree = serde_json::from_str(&text).unwrap();
         assert_eq!(apply_json(&Settings::default(), &tree).unwrap(), (settings, warnings));
     }

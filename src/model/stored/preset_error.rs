@@ -1,39 +1,39 @@
-//! Why a text is no look.
+//! Errors in reading presets and other stored settings.
 
-/// Why JSON does not become settings.
+/// Reason why JSON cannot be converted to settings.
 #[derive(Debug, thiserror::Error)]
 pub enum PresetError {
-    /// Not JSON at all.
+    /// Syntax error: the text is not JSON.
     #[error("not valid JSON: {0}")]
     Syntax(#[source] serde_json::Error),
-    /// Bytes of something else.
+    /// Encoding error: the bytes are not UTF-8.
     #[error("it is no text: {0}")]
     NoText(#[source] std::str::Utf8Error),
-    /// JSON, but a field has the wrong form.
+    /// Valid JSON with a field of the wrong type.
     #[error("a setting has the wrong form: {0}")]
     Form(#[source] serde_json::Error),
-    /// Not an object.
+    /// Valid JSON that is not an object.
     #[error("a preset must be a JSON object, for instance {{\"shadows\": {{\"strength\": 0.8}}}}")]
     NotAnObject,
-    /// Longer than any look.
+    /// Text that exceeds the largest size of a look.
     #[error("it has {bytes} bytes, and a look has at most 1.25 MiB")]
     TooLong {
-        /// How many there are.
+        /// Size of the text in bytes.
         bytes: usize,
     },
-    /// `--set` names something that does not exist.
+    /// Path of `--set` that does not exist.
     #[error("there is no setting `{path}`; at {} there are: {known}", place(at))]
     UnknownPath {
-        /// The whole path.
+        /// Complete path as given.
         path: String,
-        /// The part that exists; empty for the top.
+        /// Existing part of the path; empty for the top level.
         at: String,
-        /// What exists there.
+        /// Names that exist at that point.
         known: String,
     },
 }
 
-/// Place of a setting in words.
+/// Describes the position of a setting in words.
 fn place(path: &str) -> String {
     if path.is_empty() { "the top".to_owned() } else { format!("`{path}`") }
 }

@@ -1,18 +1,17 @@
-//! Settings under the names that they had before: what was saved stays readable.
+//! Renamed settings: conversion of old names in files and paths.
 
 use serde_json::{Map, Value, json};
 
 use crate::model::{Camera, Fit};
 
-/// Fields that were called otherwise, by their path: (before, now).
+/// Renamed fields by path: (before, now).
 const FIELDS: [(&str, &str); 1] = [("ground", "floor")];
 
-/// Values that were called otherwise: (path of the setting as it is called now, before, now). `*` stands for any
-/// item of a list.
+/// Renamed values: (path of the setting with its current name, before, now). `*` matches any item of a list.
 const VALUES: [(&str, &str, &str); 2] =
     [("lights.*.lock", "world", "scene"), ("shadows.storage", "collapsed", "combined")];
 
-/// The present path of a setting.
+/// Returns the current path of a setting.
 pub(super) fn current_path(path: &str) -> String {
     for (before, now) in FIELDS {
         match path.strip_prefix(before) {
@@ -24,7 +23,7 @@ pub(super) fn current_path(path: &str) -> String {
     path.to_owned()
 }
 
-/// Puts views that were kept under a digit each, and had no names, among what is kept: in the order of their digits.
+/// Converts views of the old format, which had digit keys and no names, to saved views, in the order of their digits.
 fn gather_views(fields: &mut Map<String, Value>) {
     let Some(Value::Object(views)) = fields.get("views") else { return };
     let mut views: Vec<(u8, Value)> = views
@@ -34,7 +33,7 @@ fn gather_views(fields: &mut Map<String, Value>) {
         .collect();
     views.sort_by_key(|(digit, _)| *digit);
     let kept = views.into_iter().map(|(digit, camera)| {
-        // What it leaves open is as usual, but that its angle of view is that of the height.
+        // Missing fields get their defaults, but the field of view refers to the height.
         let mut whole =
             serde_json::to_value(Camera { fit: Fit::Height, ..Camera::default() }).unwrap_or_default();
         if let (Value::Object(whole), Value::Object(camera)) = (&mut whole, camera) {
@@ -47,7 +46,7 @@ fn gather_views(fields: &mut Map<String, Value>) {
     fields.entry("kept").or_insert(kept);
 }
 
-/// Replaces names from before in a value that stands at a path, and in all that it holds.
+/// Replaces old names in a value at a path, recursively.
 pub(super) fn rename(path: &str, value: &mut Value) {
     if let (true, Value::Object(fields)) = (path.is_empty(), &mut *value) {
         gather_views(fields);
@@ -75,7 +74,7 @@ pub(super) fn rename(path: &str, value: &mut Value) {
     }
 }
 
-/// Whether a path is what a pattern describes.
+/// Returns true if a path matches a pattern.
 fn matches(pattern: &str, path: &str) -> bool {
     let is_item = |part: &str| part == "*" || part.parse::<usize>().is_ok();
     pattern.split('.').count() == path.split('.').count()

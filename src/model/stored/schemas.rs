@@ -1,8 +1,8 @@
-//! What earlier schemas did where there was nothing to set yet: what was saved looks as it looked then.
+//! Compatibility with earlier schemas: missing settings get the values that were in effect then.
 
 use serde_json::{Map, Value, json};
 
-/// Settings that came with a schema, and what schemas before it did: (schema, group, setting, value).
+/// Settings added by a schema, with the value that was in effect before: (schema, group, setting, value).
 fn added() -> [(u64, &'static str, &'static str, Value); 5] {
     [
         (2, "sampling", "slabs", json!("even")),
@@ -13,8 +13,8 @@ fn added() -> [(u64, &'static str, &'static str, Value); 5] {
     ]
 }
 
-/// Adds to a record that names its schema what that schema did, for every setting that it did not have. A preset
-/// that names no schema is of none: it leaves open what it does not name.
+/// Adds to a record with a schema number the values that were in effect for settings it does not have. A preset
+/// without a schema number is left unchanged.
 pub(super) fn complete(record: &mut Value) {
     let Some(schema) = record.get("schema").and_then(Value::as_u64) else { return };
     let Value::Object(groups) = record else { return };
@@ -23,7 +23,7 @@ pub(super) fn complete(record: &mut Value) {
         if let Some(camera) = what.get_mut("view") {
             complete_camera(camera);
         }
-        // It names the schema that it was written with.
+        // A saved look has its own schema number.
         if let Some(look) = what.get_mut("look") {
             complete(look);
         }
@@ -44,8 +44,8 @@ pub(super) fn complete(record: &mut Value) {
     complete_exposure(groups);
 }
 
-/// Exposes as before there was a choice what a record says of the end of a picture, if it says all that there was then:
-/// the automatic look that it is laid over may have an exposure of its own.
+/// Sets the exposure to 1 in a record from before it was a setting, if it has all other output settings of that time:
+/// the automatic look to which it is applied may have another exposure.
 fn complete_exposure(groups: &mut Map<String, Value>) {
     if let Some(Value::Object(output)) = groups.get_mut("output")
         && output.contains_key("tone_map")
@@ -55,7 +55,7 @@ fn complete_exposure(groups: &mut Map<String, Value>) {
     }
 }
 
-/// Takes the normals of scattered sheets from sheets, whatever was set: so they were.
+/// Sets normals of scattered sheets to come from sheets, regardless of the setting: earlier versions ignored it.
 fn complete_scattered(groups: &mut Map<String, Value>) {
     if let Some(Value::Object(sampling)) = groups.get_mut("sampling")
         && sampling.get("engine") == Some(&Value::from("scatter"))
@@ -64,29 +64,29 @@ fn complete_scattered(groups: &mut Map<String, Value>) {
     }
 }
 
-/// Spends densities on all values of the file where a look says what is seen at which value, but not which values that
-/// is about: so all looks did before there was a choice. What has neither leaves the range.
+/// Sets the density range to all values of the file for a look that has a transfer function, but no range: all looks
+/// did so before it was a setting. A record with neither is left unchanged.
 fn complete_range(groups: &mut Map<String, Value>) {
     if groups.contains_key("transfer") {
         groups.entry("range").or_insert_with(|| Value::from("full"));
     }
 }
 
-/// Whether what a record says of labels is all of it: a session names every label that its look knows, those that it is
-/// laid over are others.
+/// Returns true if a record replaces the label table instead of merging with it: a session contains every label of
+/// its look.
 pub(super) fn lays_labels_anew(record: &Value) -> bool {
     record.get("labels").is_some() && record.get("schema").is_some()
 }
 
-/// Whether a record is about values, and not about labels: it says what is seen at which
-/// value. So were all before there were tables of labels.
+/// Returns true if a record is about values, not labels: it has a transfer function. So had all records before label
+/// tables existed.
 pub(super) fn shows_values(record: &Value) -> bool {
     record.get("labels").is_none() && record.pointer("/transfer/points").is_some()
 }
 
-/// Gives the angle of view of a camera to the picture's height, if it says how far away the eye is, which frames
-/// what is seen, and not what it is framed in; and its z up, if it says from where it looks: all cameras of schema 1
-/// are so, and those of schema 2 from before there was a choice.
+/// Adds the defaults of earlier versions to a camera. One with a distance refers its field of view to the height: the
+/// distance frames the object, but not in which frame. One with an azimuth gets z up. All cameras of schema 1 need
+/// this, and those of schema 2 from before the settings existed.
 fn complete_camera(camera: &mut Value) {
     if let Value::Object(camera) = camera
         && camera.contains_key("distance")
@@ -100,8 +100,8 @@ fn complete_camera(camera: &mut Value) {
     }
 }
 
-/// Lets a balance be that a preset or record names: unless it also says that the balance is to be kept, whoever wrote
-/// it means the number.
+/// Turns off automatic balancing if a preset or record sets the balance, unless it also sets `keep_balanced`: an
+/// explicit number is meant to stay.
 pub(super) fn keep_named_balance(record: &mut Value) {
     if let Some(Value::Object(shadows)) = record.get_mut("shadows")
         && shadows.contains_key("balance")
@@ -132,7 +132,7 @@ mod tests {
         assert_eq!((old.shadows.gain, old.schema), (2.0, SCHEMA));
         let scattered = load(r#"{"schema": 1, "sampling": {"engine": "scatter", "gradients": "volume"}}"#);
         assert_eq!(scattered.sampling.gradients, Gradients::Sheets);
-        // What it names all the same counts, and so does what has no schema.
+        // Explicit settings take precedence, and a record without a schema is not completed.
         assert_eq!(load(r#"{"schema": 1, "shading": {"sides": "one"}}"#).shading.sides, Sides::One);
         assert_eq!(load(r#"{"shadows": {"gain": 2.0}}"#).shadows.near_field, NearField::Short);
         assert_eq!(load(r#"{"schema": 2}"#), Settings::default());
@@ -148,7 +148,7 @@ mod tests {
         assert_eq!(exposure(&saved.to_string()), 1.0);
         saved["output"]["exposure"] = serde_json::json!(0.5);
         assert_eq!(exposure(&saved.to_string()), 0.5);
-        // What leaves the end of a picture open leaves its exposure, too.
+        // A record without output settings keeps the current exposure.
         assert_eq!(exposure(r#"{"schema": 2, "output": {"tone_map": "clip"}}"#), 1.7);
         assert_eq!(exposure(r#"{"schema": 2}"#), 1.7);
     }
@@ -167,7 +167,7 @@ mod tests {
         assert_eq!((before.camera.fit, before.camera.distance), (Fit::Height, 4.0));
         assert_eq!(before.kept.iter().map(|kept| kept.digit).collect::<Vec<_>>(), [Some(2)]);
         assert!(before.kept.iter().all(|kept| kept.camera().fit == Fit::Height));
-        // What says nothing of the frame leaves it, and what names it counts.
+        // A record without a camera leaves the frame, and an explicit frame takes precedence.
         for kept in [
             r#"{"schema": 1, "shadows": {"gain": 2.0}}"#,
             r#"{"schema": 2, "camera": {"azimuth_deg": 10.0}}"#,
@@ -176,7 +176,7 @@ mod tests {
         ] {
             assert_eq!(load(kept).camera.fit, Fit::Frame, "{kept}");
         }
-        // A whole camera that is read by itself.
+        // A complete camera, deserialised directly.
         let mut saved = serde_json::to_value(&now.camera).expect("a camera");
         saved.as_object_mut().expect("an object").remove("fit");
         assert_eq!(serde_json::from_value::<Camera>(saved).expect("a camera").fit, Fit::Height);
@@ -187,7 +187,7 @@ mod tests {
         let range = |text: &str| load_json(&Settings::default(), text).expect("settings").0.range;
         assert_eq!(range(r#"{"schema": 2, "transfer": {"points": []}}"#), DensityRange::Full);
         assert_eq!(range(r#"{"schema": 1, "transfer": {}}"#), DensityRange::Full);
-        // What says nothing of values, what names the range, and what is of no schema.
+        // Records without values, with an explicit range, or without a schema.
         for now in [
             r#"{"schema": 2, "shadows": {"gain": 2.0}}"#,
             r#"{"schema": 2, "transfer": {}, "range": "robust"}"#,
@@ -213,12 +213,12 @@ mod tests {
         for of_neither in [r#"{"schema": 2, "shadows": {"gain": 2.0}}"#, r#"{"labels": {}}"#] {
             assert_eq!(labels(of_neither), table, "{of_neither}");
         }
-        // A session has all that its look had, a preset lays its entries over those that there are.
+        // A session replaces the label table; a preset merges its entries.
         assert_eq!(labels(r#"{"schema": 2, "labels": {"9": {}}, "transfer": {"points": []}}"#).len(), 1);
         assert_eq!(labels(r#"{"labels": {"9": {}}}"#).len(), 4);
         let kept = load_json(&Settings::default(), &to_json(&first)).expect("settings").0;
         assert_eq!(kept, first);
-        // Whoever names the curve means it.
+        // Setting the curve explicitly discards labels.
         let curve = apply_path(&first, "transfer.interpolation", "extinction").expect("settings");
         assert!(curve.labels.is_empty());
         assert!(!apply_path(&first, "shadows.gain", "2").expect("settings").labels.is_empty());

@@ -1,12 +1,12 @@
-//! What a record says that this version does not know: remarks, and settings of other versions. It is written again
-//! when the record is, so that nobody loses it by saving.
+//! Unknown content of a record: remarks of other programs, and settings of other versions. It is preserved when the
+//! record is saved again.
 
 use serde_json::{Map, Value};
 
-/// Remarks of ours: they are written anew, or are true of the record alone that was read.
+/// Remarks of this program, which are not preserved: they are rewritten, or hold only for the record that was read.
 const OURS: [&str; 4] = ["_volume", "_picture", "_values", "_made_by"];
 
-/// What a record says beyond what was understood of it; null if that is all.
+/// Returns the content of a record that was not understood; null if there is none.
 pub(super) fn beyond(given: &Value, understood: &Value) -> Value {
     let is_ours = |name: &str| OURS.contains(&name);
     match rest(given, understood) {
@@ -18,7 +18,7 @@ pub(super) fn beyond(given: &Value, understood: &Value) -> Value {
     }
 }
 
-/// The parts of a value that have no counterpart in another.
+/// Returns the parts of a value that have no counterpart in another.
 fn rest(given: &Value, understood: &Value) -> Value {
     match (given, understood) {
         (Value::Object(given), Value::Object(understood)) => {
@@ -29,7 +29,7 @@ fn rest(given: &Value, understood: &Value) -> Value {
             let parts: Map<_, _> = parts.filter(|(_, part)| !part.is_null()).collect();
             if parts.is_empty() { Value::Null } else { Value::Object(parts) }
         }
-        // Items are known by their place.
+        // List items are matched by position.
         (Value::Array(given), Value::Array(understood)) if given.len() == understood.len() => {
             let parts: Vec<_> =
                 given.iter().zip(understood).map(|(given, known)| rest(given, known)).collect();
@@ -39,7 +39,7 @@ fn rest(given: &Value, understood: &Value) -> Value {
     }
 }
 
-/// Adds such parts to what is written; what is there already stays.
+/// Adds unknown content to a tree; existing fields take precedence.
 pub(super) fn add(tree: &mut Value, unknown: &Value) {
     match (tree, unknown) {
         (Value::Object(tree), Value::Object(unknown)) => {
@@ -50,7 +50,7 @@ pub(super) fn add(tree: &mut Value, unknown: &Value) {
                 }
             }
         }
-        // After items were added or taken away, nobody knows to which one a part belongs.
+        // After items were added or removed, positions no longer match.
         (Value::Array(tree), Value::Array(unknown)) if tree.len() == unknown.len() => {
             tree.iter_mut().zip(unknown).for_each(|(known, value)| add(known, value));
         }

@@ -1,15 +1,15 @@
-//! Points that are added to a transfer function by hand. Values are in data units, opacities per opacity unit.
+//! Adding points to a transfer function in the editor. Values are in data units, opacities per opacity unit.
 
 use super::{ControlPoint, TransferFunction};
 use crate::data::ValueRange;
 
-/// Width of the flank between a point beyond the ends of the curve and the point that holds the values behind it, as a
-/// share of the values that the editor shows: 12 points in an editor of 1200, so that both can be grabbed.
+/// Width of the flank between a point beyond the ends of the curve and the point that holds the values behind it, as
+/// a share of the values that the editor shows: 12 pixels in an editor of 1200, so that both can be grabbed.
 const FLANK: f64 = 0.01;
 
 impl TransferFunction {
-    /// Adds a point and gives its index. Left of the first point and right of the last one, a second point comes with it
-    /// where the values beyond would become more opaque: it holds them at the opacity that they have. `shown`: the values
+    /// Adds a point and returns its index. Left of the first point and right of the last one, a second point is added
+    /// if the values beyond would become more opaque: it holds them at their current opacity. `shown`: the values
     /// that the editor shows; the second point lies within them.
     pub fn add_point(&mut self, value: f64, opacity: f64, shown: ValueRange) -> usize {
         let (Some(first), Some(last)) = (self.points.first().copied(), self.points.last().copied()) else {
@@ -19,7 +19,7 @@ impl TransferFunction {
         let flank = FLANK * shown.span();
         if value < first.value && opacity > first.opacity {
             let beyond = (value - flank).max(shown.low);
-            // At the border of the editor the point itself makes room.
+            // At the border of the editor the point itself is moved.
             let value = value.max((beyond + flank).min(first.value));
             let held = ControlPoint::new(beyond.min(value), first.color, first.opacity);
             self.points.splice(0..0, [held, ControlPoint::new(value, first.color, opacity)]);
@@ -46,7 +46,7 @@ mod tests {
 
     const SHOWN: ValueRange = ValueRange { low: 0.0, high: 200.0 };
 
-    /// A curve over the values 100 … 150 that ends at some opacities.
+    /// Returns a curve over the values 100 … 150 with the given opacities at its ends.
     fn curve(first: f64, last: f64) -> TransferFunction {
         let point = |value, opacity| ControlPoint::new(value, [0.5; 3], opacity);
         TransferFunction {
@@ -67,7 +67,7 @@ mod tests {
                 assert!(function.opacity_at(far).abs() < 1e-12, "{value}: {far}");
             }
         }
-        // They keep what they had, and no more.
+        // Values beyond keep their opacity.
         let mut function = curve(0.3, 0.2);
         function.add_point(40.0, 0.8, SHOWN);
         function.add_point(180.0, 0.8, SHOWN);
@@ -94,7 +94,7 @@ mod tests {
     fn points_at_the_border_of_the_editor_keep_the_outermost_value_clear() {
         for (value, outermost) in [(0.0, 0.0), (1.0, 0.0), (200.0, 200.0), (199.5, 200.0)] {
             let mut function = curve(0.0, 0.0);
-            // What stays as it is after the last point has no effect on what is added.
+            // A step after the last point has no effect on added points.
             function.points[2].easing = Easing::Step;
             let index = function.add_point(value, 0.8, SHOWN);
             assert!(function.points.is_sorted_by(|a, b| a.value <= b.value));

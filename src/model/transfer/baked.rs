@@ -1,26 +1,27 @@
-//! Transfer functions as tables.
+//! Baked transfer functions: lookup tables of colour and extinction, with derived tables.
 
 use super::LUT_SIZE;
 
-/// A transfer function as a table over a value range: linear RGB and extinction per scene unit.
+/// Lookup table of a transfer function over a value range: linear RGB and extinction per scene unit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BakedTransfer {
-    /// [`LUT_SIZE`] entries, evenly spaced over densities 0 … 1, both ends included.
+    /// Table of [`LUT_SIZE`] entries, evenly spaced over densities 0 … 1, both ends included.
     pub entries: Vec<[f32; 4]>,
-    /// For each of them 1 where extinction rises with density, −1 where it falls, and between them amid a change: to
-    /// which side of a surface it falls.
+    /// Sign of the slope of extinction for each entry: 1 where it rises with density, −1 where it falls, and values
+    /// between amid a change. Tells to which side of a surface opacity falls.
     pub sides: Vec<f32>,
-    /// For each power of two up to [`LUT_SIZE`], for each entry the largest extinction of so many entries from there on.
+    /// Range maxima of extinction: for each power of two up to [`LUT_SIZE`] and each entry, the largest of that many
+    /// entries from there on.
     pub peaks: Vec<f32>,
-    /// For each entry the integral of extinction over densities from 0 to its own, where entries are 1 apart.
+    /// Integrals of extinction over densities from 0 to each entry, in units of the entries' spacing.
     pub integrals: Vec<f32>,
 }
 
-/// How far, in entries, a change of extinction says to which side it falls: a step of 8-bit data.
+/// Decay length, in entries, of a change's influence on `sides`: one step of 8-bit data.
 const SIDE_REACH: f64 = LUT_SIZE as f64 / 256.0;
 
-/// For each entry the balance of rises and falls around it, (rises − falls) / (rises + falls), each weighted by
-/// e^(−distance/[`SIDE_REACH`]): on a plateau the nearest change decides. 1 where nothing changes anywhere.
+/// Returns for each entry the balance of rises and falls around it, (rises − falls) / (rises + falls), each weighted
+/// by e^(−distance/[`SIDE_REACH`]): on a plateau the nearest change decides. 1 if nothing changes anywhere.
 fn sides(entries: &[[f32; 4]]) -> Vec<f32> {
     let fade = (-1.0 / SIDE_REACH).exp();
     let steps: Vec<f64> =
@@ -41,7 +42,7 @@ fn sides(entries: &[[f32; 4]]) -> Vec<f32> {
         .collect()
 }
 
-/// Largest extinctions over runs of 1, 2, 4 … [`LUT_SIZE`] entries; runs end with the table.
+/// Returns the largest extinctions over runs of 1, 2, 4 … [`LUT_SIZE`] entries; runs end with the table.
 fn peaks(entries: &[[f32; 4]]) -> Vec<f32> {
     let count = entries.len();
     let mut runs: Vec<f32> = entries.iter().map(|entry| entry[3]).collect();
@@ -55,7 +56,7 @@ fn peaks(entries: &[[f32; 4]]) -> Vec<f32> {
     runs
 }
 
-/// Integrals of extinction, linear between entries, from the first to each.
+/// Returns the integrals of extinction, linear between entries, from the first entry to each.
 fn integrals(entries: &[[f32; 4]]) -> Vec<f32> {
     let mut sum = 0.0_f64;
     let steps = entries.windows(2).map(|pair| {
@@ -66,44 +67,45 @@ fn integrals(entries: &[[f32; 4]]) -> Vec<f32> {
 }
 
 impl BakedTransfer {
-    /// A table of [`LUT_SIZE`] entries.
+    /// Creates a table from [`LUT_SIZE`] entries.
     pub(super) fn new(entries: Vec<[f32; 4]>) -> Self {
         Self { sides: sides(&entries), peaks: peaks(&entries), integrals: integrals(&entries), entries }
     }
 
-    /// Extinctions that rise evenly from nothing to the largest, of no colour of their own: those of shares of it.
+    /// Creates a white table whose extinction rises linearly from 0 to `largest`: for volumes that store shares of
+    /// it.
     pub fn of_shares(largest: f32) -> Self {
         let last = (LUT_SIZE - 1) as f32;
         Self::new((0..LUT_SIZE).map(|entry| [1.0, 1.0, 1.0, largest * entry as f32 / last]).collect())
     }
 
-    /// All numbers one after the other, as shaders declare them (`density/table.wgsl`).
+    /// Returns all numbers in the order of the shaders' declaration (`density/table.wgsl`).
     pub(crate) fn numbers(&self) -> Vec<f32> {
         let Self { entries, sides, peaks, integrals } = self;
         entries.iter().flatten().chain(sides).chain(peaks).chain(integrals).copied().collect()
     }
 
-    /// The largest extinction of any density, per scene unit.
+    /// Returns the largest extinction of any density, per scene unit.
     pub fn most_extinction(&self) -> f32 {
         self.entries.iter().map(|[.., extinction]| *extinction).fold(0.0, f32::max)
     }
 
-    /// Whether the lowest density has any extinction.
+    /// Returns true if the lowest density has any extinction.
     pub(crate) fn shows_lowest(&self) -> bool {
         self.entries[0][3] > 0.0
     }
 
-    /// Whether both have extinction at the same densities: only how much, and of which colour, differs.
+    /// Returns true if both tables have extinction at the same densities; its amount and the colour may differ.
     pub fn shows_like(&self, other: &Self) -> bool {
         let pairs = self.entries.iter().zip(&other.entries);
         self.entries.len() == other.entries.len()
             && pairs.into_iter().all(|(a, b)| (a[3] > 0.0) == (b[3] > 0.0))
     }
 
-    /// Whether any density in `[min, max]` has extinction. Looks at the table entries around the
-    /// range too, since values between entries are interpolated.
+    /// Returns a test for extinction at any density in `[min, max]`. It includes the table entries around the range,
+    /// since values between entries are interpolated.
     pub fn visibility(&self) -> impl Fn(f32, f32) -> bool + Sync + use<> {
-        // visible[i] counts the entries below i that have extinction.
+        // counts[i] is the number of entries below i that have extinction.
         let counts: Vec<u32> = std::iter::once(0)
             .chain(self.entries.iter().scan(0, |seen, entry| {
                 *seen += u32::from(entry[3] > 0.0);
@@ -119,20 +121,20 @@ impl BakedTransfer {
         }
     }
 
-    /// The largest extinction of densities from `low` to `high`.
+    /// Returns the largest extinction of densities from `low` to `high`.
     pub fn largest_extinction(&self, low: f64, high: f64) -> f64 {
         let at = |density: f64| density.clamp(0.0, 1.0) * (LUT_SIZE - 1) as f64;
         let (first, last) = (at(low).floor() as usize, at(high).ceil() as usize);
         self.entries[first..=last].iter().map(|entry| f64::from(entry[3])).fold(0.0, f64::max)
     }
 
-    /// To which side opacity falls at a density, of the nearest entry.
+    /// Returns the side to which opacity falls at a density, from the nearest entry.
     pub fn side(&self, density: f64) -> f64 {
         let at = density.clamp(0.0, 1.0) * (LUT_SIZE - 1) as f64;
         f64::from(self.sides[at.round() as usize])
     }
 
-    /// Linear RGB and extinction per scene unit at a density, interpolated in f64.
+    /// Returns linear RGB and extinction per scene unit at a density, interpolated in f64.
     pub fn sample(&self, density: f64) -> [f64; 4] {
         let at = density.clamp(0.0, 1.0) * (LUT_SIZE - 1) as f64;
         let low = (at as usize).min(LUT_SIZE - 2);
@@ -157,7 +159,7 @@ mod tests {
 
     #[test]
     fn sides_are_those_of_the_nearest_change() {
-        // Rising, a plateau, falling.
+        // A rise, a plateau, and a fall.
         let found = sides(&[(0.0, 0.0), (0.2, 0.0), (0.3, 0.8), (0.7, 0.8), (0.8, 0.0)]);
         let at = |density: f64| found[(density * 1023.0) as usize];
         for rising in [0.0, 0.1, 0.25, 0.3, 0.45] {
@@ -166,7 +168,7 @@ mod tests {
         for falling in [0.55, 0.7, 0.75, 0.9, 1.0] {
             assert!(at(falling) < -0.99, "{falling}: {}", at(falling));
         }
-        // Between them there is no jump.
+        // There is no jump between them.
         assert!(found.windows(2).all(|pair| (pair[1] - pair[0]).abs() < 0.3));
     }
 

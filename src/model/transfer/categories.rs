@@ -1,35 +1,35 @@
-//! Colours that tell labels apart: each is as far as can be from all before it (Glasbey, van der Heijden, Toh & Gray
-//! 2007), in Oklab, and all are nearly equally light.
+//! Categorical colours for labels: each is as different as possible from all before it (Glasbey, van der Heijden, Toh
+//! & Gray 2007), in Oklab, and all are nearly equally light.
 
 use std::sync::OnceLock;
 
 use crate::model::{lab_from_lch, linear_from_oklab, oklab_from_linear, srgb_from_lch};
 
-/// Different colours; they repeat for numbers beyond. The most alike of them are 0.015 apart in Oklab (a test measures
-/// it), which is hardly told apart side by side: more could not be.
+/// Number of different colours; they repeat for larger label numbers. The closest two are 0.015 apart in Oklab (a
+/// test measures it), which is hardly distinguishable side by side: more would be indistinguishable.
 const COUNT: usize = 256;
 
-/// Lightness of all, about that of other palettes in their middle, and how far some are from it, so that there are more of
-/// them: less than the ambient share of 0.15 alone leaves between light and shadow.
+/// Mean lightness, about that of the other palettes in their middle, and the deviation of some colours, which allows
+/// for more of them: less than the difference between light and a shadow with the ambient share of 0.15.
 const LIGHTNESS: f64 = 0.76;
 const SPREAD: f64 = 0.07;
 
-/// Chroma of the strongest colours, which sRGB has at this lightness for some hues only; what a display cannot show is left
-/// out.
+/// Chroma of the strongest colours, which sRGB has at this lightness for some hues only; colours outside the gamut
+/// are left out.
 const MOST_CHROMA: f64 = 0.17;
 
-/// The colour of a label by its number: always the same for the same number.
+/// Returns the colour of a label, which depends only on its number.
 pub fn category(number: i64) -> [f32; 3] {
     static COLORS: OnceLock<Vec<[f32; 3]>> = OnceLock::new();
     let colors = COLORS.get_or_init(|| farthest_first().into_iter().map(srgb_from_lch).collect());
-    // Zero is what is around: labels begin with one.
+    // Zero is background: labels begin at one.
     let index = (number - 1).rem_euclid(COUNT as i64) as usize;
     colors.get(index).copied().unwrap_or([0.8; 3])
 }
 
-/// Colours, as lightness, chroma and hue, each as far as can be from all before.
+/// Returns colours as lightness, chroma and hue, by farthest-point selection.
 fn farthest_first() -> Vec<[f64; 3]> {
-    // Two hundred hues, eight chromas and five lightnesses are finer than any two of the colours lie apart.
+    // Two hundred hues, eight chromas and five lightnesses are a finer grid than the distance of any two colours.
     let candidates: Vec<[f64; 3]> = (0..5)
         .flat_map(|l| (0..8).flat_map(move |c| (0..200).map(move |h| (l, c, h))))
         .map(|(l, c, h)| {
@@ -57,7 +57,8 @@ fn farthest_first() -> Vec<[f64; 3]> {
     chosen
 }
 
-/// Whether a display can show a colour: what it shows is the same to a thousandth, far less than any two are apart.
+/// Returns true if a colour lies in the sRGB gamut: clipping changes it by less than a thousandth, far less than the
+/// distance of any two colours.
 fn is_shown(lch: [f64; 3]) -> bool {
     let lab = lab_from_lch(lch);
     let back = oklab_from_linear(linear_from_oklab(lab));

@@ -1,13 +1,13 @@
-//! Colour maps that are known to read well, each as nine evenly spaced sRGB colours.
+//! Predefined colour maps, each as nine evenly spaced sRGB colours, and their application to transfer functions.
 
 use crate::model::{ControlPoint, Easing, TransferFunction};
 
-/// Colours along a scale.
+/// Colour map with nine evenly spaced stops.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ColorMap {
-    /// What menus call it.
+    /// Name of the map in menus.
     pub name: &'static str,
-    /// 0xRRGGBB, from the low end to the high one.
+    /// Stops as 0xRRGGBB, from the low end to the high one.
     stops: [u32; 9],
 }
 
@@ -78,11 +78,11 @@ pub const COLOR_MAPS: [ColorMap; 15] = [
     },
 ];
 
-/// Points nearer to each other than this share of the range get no stop between them.
+/// Minimum distance between control points, as a share of the range: a nearer stop gets no point of its own.
 const NEAREST: f64 = 0.02;
 
 impl ColorMap {
-    /// The sRGB colour at a place from 0 to 1.
+    /// Returns the sRGB colour at a position from 0 to 1.
     pub fn at(&self, place: f64) -> [f32; 3] {
         let place = place.clamp(0.0, 1.0) * 8.0;
         let low = (place as usize).min(7);
@@ -96,8 +96,8 @@ impl ColorMap {
 }
 
 impl TransferFunction {
-    /// Colours the visible values by a map, from the last that is invisible to the last point, or the other
-    /// way round. Opacities stay as they are; there are more points afterwards, where colours bend.
+    /// Colours the visible values by a map, from the last invisible point to the last point, or in reverse. Opacities
+    /// stay unchanged; points are added at the map's stops.
     pub fn color_by(&mut self, map: &ColorMap, reversed: bool) {
         let Some((low, high)) = self.visible_range() else { return };
         let span = (high - low).max(1e-300);
@@ -114,15 +114,15 @@ impl TransferFunction {
         }
     }
 
-    /// From the last point before anything is visible to the last point.
+    /// Returns the range from the last point before anything is visible to the last point.
     fn visible_range(&self) -> Option<(f64, f64)> {
         let first = self.points.iter().position(|point| point.opacity > 0.0)?;
         Some((self.points[first.saturating_sub(1)].value, self.points.last()?.value))
     }
 
-    /// Opacities the other way round along the values that have points.
+    /// Mirrors opacities and colours along the range of values of the points.
     pub fn invert(&mut self) {
-        // What stays until the next point would have to stay since the one before.
+        // A step, which holds until the next point, would have to hold since the previous one.
         for index in (0..self.points.len()).rev() {
             if self.points[index].easing == Easing::Step {
                 self.straighten(index);
@@ -133,7 +133,7 @@ impl TransferFunction {
         for point in &mut self.points {
             point.value = sum - point.value;
         }
-        // The way from a point to the next is now the way from the next to it.
+        // A segment's easing now belongs to the point at its other end.
         let ways = self.points.len() - 1;
         let mut easings: Vec<_> = self.points[..ways].iter().map(|point| point.easing).collect();
         easings.reverse();
@@ -143,7 +143,7 @@ impl TransferFunction {
         }
     }
 
-    /// Moves all points along the values, and spreads them around their middle.
+    /// Moves all points along the value axis, and scales their distances from the middle.
     pub fn shift_and_stretch(&mut self, shift: f64, stretch: f64) {
         let (Some(first), Some(last)) = (self.points.first(), self.points.last()) else { return };
         let middle = f64::midpoint(first.value, last.value);

@@ -1,22 +1,23 @@
-//! Curves that are drawn by hand: a stroke becomes few points.
+//! Freehand drawing of opacity curves: a stroke is simplified to a few control points.
 
 use super::{ControlPoint, Easing, TransferFunction};
 
-/// Places along a stroke: as many as pixels of a wide editor.
+/// Number of samples along a stroke: as many as pixels of a wide editor.
 const PLACES: usize = 1024;
 
-/// How far a curve of few points may lie from the hand's, in opacity: a hand trembles by as much.
+/// Tolerance of the simplified curve, in opacity: the tremor of a hand.
 const TOLERANCE: f64 = 0.012;
 
-/// The most points that a stroke becomes; a finer one is followed less closely.
+/// Largest number of points per stroke; a more detailed one is followed less closely.
 const MOST: usize = 16;
 
-/// Share of what is shown in which the old curve ends and the drawn one begins.
+/// Gap between the old curve and the drawn one, as a share of the shown values.
 const EDGE: f64 = 1.0 / 2048.0;
 
 impl TransferFunction {
-    /// The curve with a stroke in the place of what it had there: pairs of value and opacity, as they were drawn; where the
-    /// hand went back, the later one counts. Colours stay those of their values. `span`: how many values are shown.
+    /// Returns the curve with the part under a stroke replaced: `stroke` has pairs of value and opacity in drawing
+    /// order; if the hand went back, the later ones apply. Colours are kept at their values. `span`: range of the
+    /// values that the editor shows.
     #[must_use]
     pub fn with_stroke(&self, stroke: &[[f64; 2]], span: f64) -> Self {
         let values = || stroke.iter().map(|[value, _]| *value);
@@ -32,7 +33,7 @@ impl TransferFunction {
             ControlPoint::new(value, self.point_at(value).color, opacity.clamp(0.0, 1.0))
         };
         let mut curve = self.clone();
-        // Beside the stroke the curve stays as it was.
+        // The curve stays unchanged on both sides of the stroke.
         if self.points.first().is_some_and(|point| point.value < low - edge) {
             curve.cut_at(low - edge);
         }
@@ -40,7 +41,7 @@ impl TransferFunction {
             curve.cut_at(high + edge);
         }
         curve.points.retain(|point| point.value <= low - edge || point.value >= high + edge);
-        // The way from the last point before the stroke is no longer its own.
+        // The segment from the last point before the stroke loses its easing.
         if let Some(before) = curve.points.iter_mut().rfind(|point| point.value < low) {
             before.easing = Easing::Linear;
         }
@@ -50,7 +51,7 @@ impl TransferFunction {
     }
 }
 
-/// The stroke as a curve: an opacity at each of [`PLACES`] places.
+/// Resamples the stroke at [`PLACES`] evenly spaced values.
 fn sampled(stroke: &[[f64; 2]], low: f64, high: f64) -> Vec<[f64; 2]> {
     let place = |value: f64| ((value - low) / (high - low) * (PLACES - 1) as f64).round() as usize;
     let mut opacities = vec![f64::NAN; PLACES];
@@ -73,8 +74,8 @@ fn sampled(stroke: &[[f64; 2]], low: f64, high: f64) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// As few of the points as follow the curve: those that lie furthest from what the others say (Ramer 1972, Douglas and
-/// Peucker 1973), by opacity alone.
+/// Simplifies a polyline by repeatedly adding the point with the largest error in opacity (Ramer 1972, Douglas and
+/// Peucker 1973).
 fn simplified(curve: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let (Some(last), true) = (curve.len().checked_sub(1), curve.len() > 2) else { return curve.to_vec() };
     let mut kept = vec![0, last];

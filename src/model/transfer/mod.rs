@@ -1,7 +1,7 @@
-//! Transfer functions: from a value in data units to colour and opacity.
+//! Transfer functions: mapping from a value in data units to colour and opacity.
 //!
-//! Opacity is per opacity unit (a length in `Settings`): the extinction is
-//! μ = −ln(1 − opacity) / unit, so that the look does not depend on the slab thickness (P eq. 6).
+//! Opacity is per opacity unit (a length in `Settings`): the extinction is μ = −ln(1 − opacity) / unit, so that the
+//! look does not depend on the slab thickness (P eq. 6).
 
 mod added_point;
 pub(super) mod baked;
@@ -17,56 +17,56 @@ use super::{BakedTransfer, linear_from_oklab, oklab_from_linear};
 use crate::data::ValueRange;
 pub use crate::math::{linear_from_srgb, srgb_from_linear};
 
-/// Entries of a baked table; values between are interpolated.
+/// Number of entries of a baked table; values between them are interpolated.
 pub const LUT_SIZE: usize = 1024;
 
-/// Most points of a function: those of the largest tables that programs exchange.
+/// Largest number of points of a function: that of the largest tables in exchange formats.
 pub const MAX_POINTS: usize = 4096;
 
-/// Opacities are cut here so that extinction stays finite: 0.9999 per unit is e^−9.2, opaque
-/// within one unit for every display.
+/// Largest opacity, so that extinction stays finite: 0.9999 per unit is e^−9.2, opaque within one unit for every
+/// display.
 pub const MAX_OPACITY: f64 = 0.9999;
 
-/// Straight pieces that stand for a smooth way.
+/// Number of linear pieces that approximate a smooth segment.
 pub const STEPS: u32 = 8;
 
-/// How opacity runs between two control points.
+/// Interpolation of opacity between two control points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Interpolation {
-    /// The opacity itself is linear: what editors show and users expect.
+    /// Linear in opacity: as editors show it and users expect.
     #[default]
     Opacity,
-    /// The extinction −ln(1 − opacity) is linear: what makes closed-form checks exact.
+    /// Linear in extinction −ln(1 − opacity): makes closed-form checks exact.
     Extinction,
 }
 
-/// How colours between two control points are mixed.
+/// Colour space in which colours between control points are interpolated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Mixing {
-    /// As light: linear RGB.
+    /// Linear RGB, as light mixes.
     #[default]
     Light,
-    /// As they are seen: Oklab, where lightness is even and mixtures stay clean.
+    /// Oklab, perceptually: lightness is even, and mixtures stay saturated.
     Seen,
 }
 
-/// How a transfer function goes from one control point to the next.
+/// Shape of the segment from one control point to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Easing {
-    /// Straight.
+    /// Linear interpolation to the next point.
     #[default]
     Linear,
-    /// With level ends: 3t² − 2t³.
+    /// Smoothstep with level ends: 3t² − 2t³.
     Smooth,
-    /// It stays as it is until the next point.
+    /// Constant until the next point.
     Step,
 }
 
 impl Easing {
-    /// How much of the next point there is at a share of the way to it.
+    /// Returns the weight of the next point at a fraction of the segment.
     fn share(self, t: f64) -> f64 {
         match self {
             Self::Linear => t,
@@ -76,23 +76,23 @@ impl Easing {
     }
 }
 
-/// A point of a transfer function.
+/// Control point of a transfer function.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ControlPoint {
-    /// In data units.
+    /// Position on the value axis, in data units.
     pub value: f64,
-    /// sRGB, 0 … 1.
+    /// Colour as sRGB, 0 … 1.
     #[serde(default = "white")]
     pub color: [f32; 3],
-    /// Per opacity unit, 0 … 1.
+    /// Opacity per opacity unit, 0 … 1.
     pub opacity: f64,
-    /// The way to the next point.
+    /// Shape of the segment to the next point.
     #[serde(default)]
     pub easing: Easing,
 }
 
 impl ControlPoint {
-    /// A point from which it goes straight to the next.
+    /// Creates a point with a linear segment to the next.
     pub fn new(value: f64, color: [f32; 3], opacity: f64) -> Self {
         Self { value, color, opacity, easing: Easing::Linear }
     }
@@ -105,29 +105,28 @@ fn white() -> [f32; 3] {
 /// Colour and opacity over the value axis; constant beyond the outermost points.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct TransferFunction {
-    /// In ascending order of value ([`Self::sort`] restores it).
+    /// Control points in ascending order of value ([`Self::sort`] restores it).
     pub points: Vec<ControlPoint>,
-    /// How opacity runs between the points.
+    /// Interpolation of opacity between the points.
     #[serde(default)]
     pub interpolation: Interpolation,
-    /// How colours between the points are mixed.
+    /// Colour space of the interpolation between the points.
     #[serde(default)]
     pub mixing: Mixing,
 }
 
-/// −ln(1 − α) with α cut at [`MAX_OPACITY`]: optical depth of one opacity unit.
+/// Returns −ln(1 − α) with α clamped to [`MAX_OPACITY`]: optical depth of one opacity unit.
 fn optical_depth(opacity: f64) -> f64 {
     -(-opacity.clamp(0.0, MAX_OPACITY)).ln_1p()
 }
 
 impl TransferFunction {
-    /// Puts the points in ascending order of value; points at the same value keep their order,
-    /// which makes a step.
+    /// Sorts the points by value; points at the same value keep their order, which makes a jump.
     pub fn sort(&mut self) {
         self.points.sort_by(|a, b| a.value.total_cmp(&b.value));
     }
 
-    /// Linear RGB and optical depth per opacity unit at a value.
+    /// Returns linear RGB and optical depth per opacity unit at a value.
     pub fn at(&self, value: f64) -> ([f64; 3], f64) {
         let color = |point: &ControlPoint| point.color.map(|c| linear_from_srgb(f64::from(c)));
         let Some(first) = self.points.first() else { return ([1.0; 3], 0.0) };
@@ -152,20 +151,20 @@ impl TransferFunction {
         (rgb, depth)
     }
 
-    /// A point on the curve.
+    /// Returns a point on the curve at a value.
     pub fn point_at(&self, value: f64) -> ControlPoint {
         let color = self.at(value).0.map(|c| srgb_from_linear(c) as f32);
         ControlPoint::new(value, color, self.opacity_at(value))
     }
 
-    /// How the function goes on at a value.
+    /// Returns the easing of the segment that contains a value.
     pub(crate) fn easing_at(&self, value: f64) -> Easing {
         let index = self.points.partition_point(|point| point.value <= value);
         index.checked_sub(1).map_or(Easing::Linear, |before| self.points[before].easing)
     }
 
-    /// Replaces the way from a point to the next by straight ones, if it is not: a step by a jump, a smooth way by
-    /// [`STEPS`] pieces. Returns how many points there are more.
+    /// Replaces a non-linear segment by linear ones: a step by a jump, a smooth segment by [`STEPS`] pieces. Returns
+    /// the number of added points.
     pub(crate) fn straighten(&mut self, index: usize) -> usize {
         let (Some(&point), Some(&next)) = (self.points.get(index), self.points.get(index + 1)) else {
             return 0;
@@ -186,7 +185,7 @@ impl TransferFunction {
         count
     }
 
-    /// Adds a point on the curve, which stays as it is (a smooth way nearly so). Returns its index.
+    /// Adds a point on the curve without changing it (a smooth segment nearly so), and returns its index.
     pub fn cut_at(&mut self, value: f64) -> usize {
         let upper = self.points.partition_point(|point| point.value <= value);
         if self.easing_at(value) == Easing::Smooth {
@@ -195,7 +194,7 @@ impl TransferFunction {
         self.insert_on_curve(value)
     }
 
-    /// Adds a point on the curve, with ways as before to both sides. Returns its index.
+    /// Adds a point on the curve, which inherits the segment's easing, and returns its index.
     pub fn insert_on_curve(&mut self, value: f64) -> usize {
         let point = self.point_at(value);
         let index = self.points.partition_point(|point| point.value <= value);
@@ -204,13 +203,13 @@ impl TransferFunction {
         index
     }
 
-    /// The opacity per opacity unit at a value, as an editor shows it.
+    /// Returns the opacity per opacity unit at a value, as an editor shows it.
     pub fn opacity_at(&self, value: f64) -> f64 {
         1.0 - (-self.at(value).1).exp()
     }
 
-    /// Tabulates the function over a volume's value range. `unit` is the opacity unit in scene
-    /// units, `scale` multiplies the extinction.
+    /// Tabulates the function over a volume's value range. `unit` is the opacity unit in scene units, `scale` is a
+    /// factor for the extinction.
     pub fn bake(&self, range: ValueRange, unit: f64, scale: f64) -> BakedTransfer {
         let entries: Vec<_> = (0..LUT_SIZE)
             .map(|i| {

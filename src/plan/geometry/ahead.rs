@@ -1,7 +1,7 @@
-//! Where samples look up light that rays nearby have led some way towards it.
+//! Cells of a light volume that samples look up at the end of their near-field rays.
 //!
-//! All samples go equally far, so that what they need of a light volume is what the transfer functions show, moved
-//! towards the light: no more than without rays nearby.
+//! All near-field rays have the same length, so the part of a light volume that they need is the part visible through
+//! the transfer functions, moved towards the light: no more cells than without a near field.
 
 use glam::DVec3;
 
@@ -9,35 +9,37 @@ use crate::math::SceneSpace;
 use crate::model::{LightKind, SceneLight};
 use crate::plan::{CellSet, lookup_reach};
 
-/// Voxels along the edge of a cell.
+/// Edge of a cell, in voxels.
 const CELL_EDGE: f64 = 2.0;
 
-/// By how many cells of 2³ voxels lookups lie ahead of their samples: along each axis any number between the two.
+/// Offset in cells of 2³ voxels from samples to their lookups: a range along each axis, both ends included.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct CellsAhead {
-    /// The least.
+    /// Smallest offset along each axis.
     pub least: [i8; 3],
-    /// The most.
+    /// Largest offset along each axis.
     pub most: [i8; 3],
 }
 
 impl CellsAhead {
-    /// Where lookups lie that are `way` (in scene units) from their samples, towards a light or at it.
+    /// Computes the offsets of lookups at a distance of `way` (in scene units) from their samples, towards a light or
+    /// at it.
     ///
-    /// A cell that moves by s cells comes to lie across two: the one is meant that has more of it, and [`Self::reach`]
-    /// has room for the other.
+    /// A cell that moves by s cells comes to lie across two: the offset is that of the one it overlaps more, and
+    /// [`Self::reach`] covers the other.
     pub fn towards(light: &SceneLight, scene: &SceneSpace, way: f64) -> Self {
         let radius = scene.support_radius();
         let place = DVec3::from(light.position);
         let (axis, spread_rad, stays) = match light.kind {
             LightKind::Parallel => (light.direction(), 0.0, false),
-            // From anywhere in the sphere, the light is seen at most so far from where its middle sees it.
+            // From anywhere in the bounding sphere, the direction to the light differs at most by this angle from
+            // that at its centre.
             LightKind::Perspective if place.length() > radius + way => {
                 (place.normalize(), (radius / place.length()).asin(), false)
             }
             LightKind::Perspective => (DVec3::Z, std::f64::consts::PI, true),
         };
-        // Along the axes of the grid, in cells for a way along them.
+        // Displacement along each axis of the grid, in cells.
         let to_index = scene.index_from_scene.matrix3.transpose() * (way / CELL_EDGE);
         let [x, y, z] = [to_index.x_axis, to_index.y_axis, to_index.z_axis].map(|row| {
             let angle_rad = row.angle_between(axis);
@@ -49,20 +51,20 @@ impl CellsAhead {
         Self { least: [x.0, y.0, z.0], most: [x.1, y.1, z.1] }
     }
 
-    /// How many cells around that which samples see lookups may need, ahead of it, of a light volume with voxels of
-    /// `divisor` data voxels: the texels that a fetch sees, and where texels are data voxels there is half a cell to
-    /// spare for what moves by parts of cells.
+    /// Returns how many cells around the samples' cells lookups may need in addition to the offset, for a light
+    /// volume with voxels of `divisor` data voxels: the texels of a fetch; if texels are data voxels, half a cell of
+    /// them is left over for displacements by fractions of a cell.
     pub fn reach(divisor: usize) -> u8 {
         lookup_reach(divisor) + u8::from(divisor > 1)
     }
 
-    /// How many cells ahead lookups lie at most, along any axis and either way.
+    /// Returns the largest offset in cells, along any axis and direction.
     pub fn farthest(&self) -> u8 {
         self.least.iter().chain(&self.most).map(|cells| cells.unsigned_abs()).max().unwrap_or(0)
     }
 
-    /// Cells that lookups ahead of those of a set may need, of a volume that ends with cell `last` along each axis:
-    /// beyond, fetches find what is at its border.
+    /// Returns the cells that lookups from the cells of `set` may need, in a volume whose last cell along each axis
+    /// is `last`: beyond it, fetches are clamped to the border.
     #[must_use]
     pub fn of(&self, set: CellSet, last: [usize; 3]) -> CellSet {
         let mut moved = set;
@@ -94,8 +96,8 @@ mod tests {
         SceneLight { kind, position, ..SceneLight::default() }
     }
 
-    /// Where the lookups of samples all over a cell lie, in light volumes with voxels of `divisor` data voxels: the
-    /// cells of those volumes' grids whose texels a fetch sees.
+    /// Returns the cells that lookups of samples all over a cell read, in light volumes with voxels of `divisor` data
+    /// voxels: cells of the light volume's grid.
     fn looked_into(light: &SceneLight, way: f64, sample_cell: [usize; 3], divisor: usize) -> Vec<[usize; 3]> {
         let scene = scene();
         let mut cells = Vec::new();
@@ -155,7 +157,7 @@ mod tests {
         }
     }
 
-    /// Rays nearby that are 3½ voxels long would take all that lies two cells further around.
+    /// Compares with dilation: near-field rays 3½ voxels long would need all cells up to two cells further around.
     #[test]
     fn a_parallel_light_needs_no_more_cells() {
         let (scene, dims) = (scene(), [5, 4, 3]);

@@ -1,8 +1,8 @@
-//! How far every cell of a volume is from the nearest in which something can be seen.
+//! Distance field of cells, for empty-space skipping: distance of every cell to the nearest visible one.
 //!
-//! Distances are Chebyshev's, in cells: everything nearer than a cell's distance is a cube of empty cells
-//! that a ray can leave in one step. What a kernel, a lookup or a reverse kernel reaches beyond a cell is
-//! subtracted from its distance, so that one field serves all passes.
+//! Distances are Chebyshev's, in cells: everything nearer than a cell's distance is a cube of empty cells that a ray
+//! can leave in one step. The reach of a kernel, lookup or reverse kernel beyond a cell is subtracted from its
+//! distance, so that one field serves all passes.
 
 use rayon::prelude::*;
 
@@ -11,20 +11,20 @@ use crate::plan::CellSet;
 /// Cells along the edge of a brick.
 const PER_BRICK: usize = 4;
 
-/// Distances are cut here: a ray leaves 62 voxels in one step.
+/// Maximum stored distance, in cells: a ray leaves at most 62 voxels in one step.
 pub const FARTHEST: u8 = 31;
 
 /// Distance of every cell to the nearest member of a set.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CellDistances {
-    /// Cells along x, y, z: those of whole bricks.
+    /// Number of cells along x, y, z, in whole bricks.
     pub dims: [usize; 3],
-    /// 0 for members, at most [`FARTHEST`]; x fastest.
+    /// Distances in cells, 0 for members, at most [`FARTHEST`]; x fastest.
     pub values: Vec<u8>,
 }
 
 impl CellDistances {
-    /// Distances to the cells of a set.
+    /// Computes the distances to the cells of a set.
     pub fn of(set: &CellSet) -> Self {
         let dims = set.dims.map(|n| n * PER_BRICK);
         let [nx, ny, _] = dims;
@@ -45,8 +45,8 @@ impl CellDistances {
         Self { dims, values: spread_through(&values, nx * ny) }
     }
 
-    /// The least of the distances at the faces of a grid whose last cells along x, y and z are these. The last face may lie
-    /// in the middle of a cell: the one before counts, too, and so do those beyond.
+    /// Returns the minimum distance at the faces of a grid whose last cells along x, y and z are `last`. The last
+    /// face may lie within a cell, so the cell before it counts as well, and so do those beyond.
     pub fn least_at_faces(&self, last: [usize; 3]) -> u8 {
         let [nx, ny, _] = self.dims;
         let is_at_face = |c: usize, axis: usize| c == 0 || c + 1 >= last[axis];
@@ -63,15 +63,15 @@ impl CellDistances {
         self.values.par_chunks(nx * ny).enumerate().map(least_in).min().unwrap_or(FARTHEST)
     }
 
-    /// Distances to the nearest of two sets of one grid.
+    /// Returns the minimum of two distance fields on the same grid.
     #[must_use]
     pub fn nearest(&self, other: &Self) -> Self {
         let values = self.values.iter().zip(&other.values).map(|(a, b)| *a.min(b)).collect();
         Self { dims: self.dims, values }
     }
 
-    /// The cells up to `reach` from the set, on a grid of `bricks` whose cells are `factor` times as
-    /// large: of those, all that hold any.
+    /// Returns the cells up to `reach` from the set, on a grid of `bricks` with cells `factor` times as large: a
+    /// coarse cell is a member if any of its cells is near enough.
     pub fn within(&self, reach: u8, factor: usize, bricks: [usize; 3]) -> CellSet {
         let [nx, ny, nz] = self.dims;
         let holds = |cell: [usize; 3]| {
@@ -97,10 +97,10 @@ impl CellDistances {
     }
 }
 
-// Chebyshev's distance separates by axis: the distance over two axes is the least, over the third, of
-// max(distance so far, step).
+// Chebyshev's distance separates by axis: the distance over three axes is the minimum over the third axis of
+// max(distance over the first two, step).
 
-/// Along a row.
+/// Propagates distances along a row of cells.
 fn spread_along(row: &mut [u8]) {
     let before = row.to_vec();
     if before.iter().all(|&distance| distance == FARTHEST) {
@@ -113,7 +113,7 @@ fn spread_along(row: &mut [u8]) {
     }
 }
 
-/// Along columns of rows.
+/// Propagates distances along the columns of a plane of rows.
 fn spread_across(plane: &mut [u8], row: usize) {
     let before = plane.to_vec();
     if before.iter().all(|&distance| distance == FARTHEST) {
@@ -124,18 +124,18 @@ fn spread_across(plane: &mut [u8], row: usize) {
     }
 }
 
-/// From plane to plane.
+/// Propagates distances from plane to plane.
 fn spread_through(planes: &[u8], plane: usize) -> Vec<u8> {
     let mut spread = planes.to_vec();
     spread.par_chunks_mut(plane).enumerate().for_each(|(at, target)| nearest_of(target, planes, at, plane));
     spread
 }
 
-/// The least, over lines of `length` values, of what they hold and how far they are from line `at`.
+/// Updates `target` with the minimum, over lines of `length` values, of max(value, distance from line `at`).
 fn nearest_of(target: &mut [u8], lines: &[u8], at: usize, length: usize) {
     let count = lines.len() / length;
     for step in 1..usize::from(FARTHEST).min(count.max(1)) {
-        // Nothing that far away is nearer than what is known.
+        // Lines further away cannot improve any distance.
         if target.iter().all(|&known| usize::from(known) <= step) {
             break;
         }
@@ -158,7 +158,7 @@ fn include(target: &mut [u8], line: &[u8], step: usize) {
 mod tests {
     use super::*;
 
-    /// A set of some cells of 3 × 2 × 4 bricks.
+    /// Makes a set with the given members, on a grid of 3 × 2 × 4 bricks.
     fn set(members: &[[usize; 3]]) -> CellSet {
         let mut set = CellSet { dims: [3, 2, 4], masks: vec![0; 24] };
         for &[x, y, z] in members {
@@ -208,7 +208,7 @@ mod tests {
         let same = distances.within(0, 1, [3, 2, 4]);
         assert_eq!(same, set(&[[4, 4, 4]]));
         assert_eq!(distances.within(1, 1, [3, 2, 4]).count(), 27);
-        // Cells 3 … 5 are cells 1 and 2 of twice the size.
+        // Cells 3 … 5 are in cells 1 and 2 of twice the size.
         let coarse = distances.within(1, 2, [2, 1, 2]);
         assert_eq!(coarse.count(), 8);
         assert_eq!(coarse.masks[0], 0b0110_0110 << 20 | 0b0110_0110 << 36);

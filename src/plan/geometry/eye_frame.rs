@@ -1,4 +1,4 @@
-//! The eye's sheets.
+//! Sheet frame of the eye: rays and slabs of a camera.
 
 use glam::{DMat3, DVec2};
 
@@ -7,33 +7,34 @@ use crate::math::SceneSpace;
 use crate::model::{Camera, PREINTEGRATED_STEPS, Projection, Settings, THIN_SLABS};
 use crate::plan::PixelWindow;
 
-/// Most slabs at a thickness of 1: more than the diagonal of a volume of 2048³ voxels, and few enough
-/// that very flat voxels do not make a ray endless.
+/// Maximum number of slabs at a thickness of 1: more than the diagonal of a volume of 2048³ voxels, and few enough
+/// that very flat voxels do not make rays endless.
 const MAX_SLABS: f64 = 4096.0;
 
-/// Nearest distance from a perspective eye that is drawn, as a share of the distance to the target.
+/// Near plane of a perspective eye, as a share of the distance to the target.
 const NEAR_SHARE: f64 = 1e-3;
 
-/// Thickest slabs of a preview, in edges of the smallest voxel: its kernel reaches as far to either side.
+/// Maximum thickness of a preview's slabs, in edges of the smallest voxel: the kernel's radius.
 const THICKEST_PREVIEW: f64 = 2.0;
 
-/// How thick they are in widths of its pixels. As thick as those, they show stripes on flat faces that are seen at steep
-/// angles: an engine block is 0.7 % off thin slabs (root of the mean square) with 1.4 voxels, and 0.3 % with one.
+/// Thickness of a preview's slabs in widths of its pixels. At 1 they show stripes on flat faces that are seen at
+/// steep angles: with 1.4 voxels an engine block differs by 0.7 % (root mean square) from thin slabs, with one voxel
+/// by 0.3 %.
 const PREVIEW_SHARE: f64 = 0.7;
 
-/// Thickness of slabs for a preview, in edges of the smallest voxel, where pictures have `slab`.
+/// Returns the slab thickness for a preview, in edges of the smallest voxel, where full pictures have `slab`.
 ///
-/// It is 0.7 of what the preview's pixels are wide where they are narrowest: it can show no finer shapes
-/// along its rays than across them. `size`: pixels of the preview.
+/// It is 0.7 times the width of the preview's pixels where they are narrowest: shapes along rays cannot be finer than
+/// across them. `size`: pixels of the preview.
 pub fn preview_slab(camera: &Camera, scene: &SceneSpace, size: [u32; 2], slab: f64) -> f64 {
     let frame = eye_frame(camera, scene, size, slab);
     let width = frame.pitch_at(frame.first_depth) / (frame.slab / slab);
-    // One is enough for a preview however large: it may show a little wood grain.
+    // At least one voxel, however large the preview: slight wood grain is acceptable.
     slab.max((PREVIEW_SHARE * width).clamp(1.0, THICKEST_PREVIEW))
 }
 
-/// The sheets of a picture with some settings: the thinnest, if slabs are as thin as they need to be, and of
-/// pre-integrated slabs their steps.
+/// Returns the sheet frame of a picture: with the thinnest slabs for slabs by need, and with the steps for
+/// pre-integrated slabs.
 pub fn picture_frame(settings: &Settings, scene: &SceneSpace, window: impl Into<PixelWindow>) -> SheetFrame {
     let frame = eye_frame(&settings.camera, scene, window, settings.thickest_slab());
     if settings.has_slabs_by_need() {
@@ -45,11 +46,11 @@ pub fn picture_frame(settings: &Settings, scene: &SceneSpace, window: impl Into<
     }
 }
 
-/// The sheets that a camera sees, `slab` smallest voxel edges thick.
+/// Returns the sheet frame of a camera, with slabs `slab` smallest voxel edges thick.
 ///
-/// The anchor plane goes through the middle of the volume when that lies well in front of the eye,
-/// else through the target (both are arbitrary; the first keeps slabs in phase while panning). Of a part of a
-/// picture, the sheets are that part of those of the whole.
+/// The anchor plane passes through the middle of the volume if that is well in front of the eye, else through the
+/// target (both are arbitrary; the first keeps slabs in phase while panning). For a part of a picture, the sheets are
+/// the corresponding part of the whole picture's.
 pub fn eye_frame(
     camera: &Camera,
     scene: &SceneSpace,
@@ -129,7 +130,7 @@ mod tests {
     #[test]
     fn parts_of_a_picture_see_what_the_whole_sees() {
         for projection in [Projection::Perspective, Projection::Orthographic] {
-            // Parts that are wide of a picture that is narrow.
+            // Wide parts of a narrow picture.
             let camera = Camera { projection, fit: Fit::Frame, ..Camera::default() };
             let whole = eye_frame(&camera, &scene(), [48, 64], 1.0);
             let part = PixelWindow { whole: [48, 64], first: [20, 30], size: [16, 9] };

@@ -1,4 +1,4 @@
-//! Where a floor lies, and maps of it.
+//! Plane of the floor in the scene, and maps of light on it.
 
 use glam::DVec3;
 
@@ -7,42 +7,43 @@ use crate::math::SceneSpace;
 use crate::model::{SceneAxis, Settings};
 use crate::plan::BrickSet;
 
-/// How far a map reaches from the middle of the floor, in scene units: beyond, a volume hides next to nothing.
+/// Half the edge of a map around the middle of the floor, in scene units: beyond it, a volume hides next to nothing.
 const REACH: f64 = 3.0;
 
-/// So many voxels below a floor at least does something lie under it: of what stands there, kernels reach two further down, and
-/// cells are two high.
+/// Minimum depth below a floor, in voxels, at which a cell counts as below it: kernels of material that stands on the
+/// floor reach two voxels further down, and cells are two voxels high.
 const HARDLY_BELOW: f64 = 4.0;
 
 /// Cells along the edge of a brick.
 const PER_BRICK: usize = BRICK_EDGE / CELL_EDGE;
 
-/// Where a floor lies that takes light.
+/// Plane of a floor that receives light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FloorPlace {
-    /// From the middle of the scene upwards.
+    /// Height above the middle of the scene, in scene units.
     pub height: f64,
-    /// The axis of the scene that points up.
+    /// Axis of the scene that points up.
     pub up: SceneAxis,
 }
 
-/// Texels of a map in the scene.
+/// Positions of a map's texels in scene space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FloorTexels {
-    /// Middle of the first.
+    /// Centre of the first texel.
     pub origin: DVec3,
-    /// From one to the next along both edges.
+    /// Steps from texel to texel along both edges.
     pub along: [DVec3; 2],
 }
 
 impl FloorPlace {
-    /// That of a look; `None` where there is no floor.
+    /// Returns the floor of a look; `None` if it is off.
     pub fn of(settings: &Settings) -> Option<Self> {
         let Settings { floor, camera, .. } = settings;
         floor.on.then_some(Self { height: floor.height, up: camera.up })
     }
 
-    /// Whether something of a volume lies under it: one of the cells in these bricks, of which `is_occupied` knows.
+    /// Returns true if part of the volume is below the floor: any occupied cell, according to `is_occupied`, in these
+    /// bricks.
     pub fn has_below(
         self,
         scene: &SceneSpace,
@@ -51,9 +52,9 @@ impl FloorPlace {
     ) -> bool {
         let up = self.up.direction();
         let axes = scene.scene_from_index.matrix3.to_cols_array_2d().map(DVec3::from);
-        // How far the highest corner of a cube of so many voxels is above its middle.
+        // Height of the highest corner of a cube above its centre, for an edge in voxels.
         let rise = |edge: f64| axes.iter().map(|axis| 0.5 * edge * axis.dot(up).abs()).sum::<f64>();
-        // Whether a brick or a cell is, so many voxels down.
+        // True if a brick or cell lies completely below the floor, at least `down` voxels deep.
         let is_below = |at: [usize; 3], edge: usize, down: f64| {
             let edge = edge as f64;
             let middle = DVec3::from(at.map(|at| (at as f64 + 0.5) * edge - 0.5));
@@ -71,18 +72,18 @@ impl FloorPlace {
         cells.any(|cell| is_below(cell, CELL_EDGE, HARDLY_BELOW) && is_occupied(cell))
     }
 
-    /// Two directions along it, and up.
+    /// Returns two directions along the floor, and up.
     fn axes(self) -> [DVec3; 3] {
         let upright = self.up.scene_from_upright();
         [upright * DVec3::X, upright * DVec3::Y, self.up.direction()]
     }
 
-    /// As many texels along an edge of a map as are so long in scene units.
+    /// Returns the number of texels along a map's edge for texels of a length in scene units.
     pub fn texels_of(length: f64) -> u32 {
         (2.0 * REACH / length).ceil() as u32
     }
 
-    /// The texels of a map with `edge` of them along each edge.
+    /// Returns the texels of a map with `edge` texels along each edge.
     pub fn texels(self, edge: u32) -> FloorTexels {
         let [right, front, up] = self.axes();
         let texel = 2.0 * REACH / f64::from(edge);
@@ -92,7 +93,7 @@ impl FloorPlace {
         }
     }
 
-    /// From scene space to texture coordinates of a map: vectors, and what is added.
+    /// Returns the transform from scene space to texture coordinates of a map: two rows, each a vector and an offset.
     pub fn lookup(self) -> [[f32; 4]; 2] {
         let map = |axis: DVec3| (axis / (2.0 * REACH)).extend(0.5).as_vec4().into();
         let [right, front, _] = self.axes();
@@ -116,7 +117,7 @@ mod tests {
     fn what_reaches_a_little_below_a_floor_does_not_lie_under_it() {
         let scene = SceneSpace::new([24; 3], glam::DAffine3::IDENTITY);
         let all = BrickSet::new([3; 3], vec![true; 27]);
-        // Through the middle of a brick, and above the brick at the bottom: under it lie 12 and 8 voxels.
+        // A floor through the middle of a brick, and one at a brick's lower face: 12 and 8 voxels are below them.
         for voxels in [12, 8] {
             let height = scene.scene_from_index.transform_point3(DVec3::splat(voxels as f64 - 0.4)).z;
             let place = FloorPlace { height, up: SceneAxis::PlusZ };

@@ -1,5 +1,5 @@
-//! Which parts of a light's sheets have to be marched: tiles of pixels under which something is looked up or
-//! attenuates light, chunk by chunk of slabs.
+//! March tiles: the tiles of a light's sheets that have to be marched, since something is looked up or attenuates
+//! light there, for each chunk of slabs.
 
 use std::ops::RangeInclusive;
 
@@ -8,43 +8,44 @@ use glam::{DAffine3, DMat3, DVec2, DVec3};
 use crate::math::SceneSpace;
 use crate::plan::LightView;
 
-/// Pixels along the edge of a tile: a workgroup's.
+/// Edge of a tile in pixels: that of a workgroup.
 pub const TILE_EDGE: u32 = 8;
 
-/// Where the row begins in a tile's entry, above the column. Sheets have at most a few thousand pixels across.
+/// Bit at which the row begins in a tile's entry, above the column. Sheets have at most a few thousand pixels across.
 pub const TILE_ROW_BIT: u32 = 15;
 
-/// Which bit is set in the entry of a tile that no chunk before has: light arrives there as it left its source.
+/// Bit set in the entry of a tile that is in no earlier chunk: light arrives there unattenuated.
 pub const TILE_FIRST_BIT: u32 = 31;
 
-/// The mark of a tile that no chunk before has.
+/// Mark of a tile that is in no earlier chunk.
 const FIRST: u32 = 1 << TILE_FIRST_BIT;
 
-/// Nearer to the light's plane than this, in distances of the anchor, boxes spread over any number of pixels.
+/// Minimum distance to the light's plane, in anchor distances; nearer boxes may cover any number of pixels.
 const NEAREST_SPREAD: f64 = 0.05;
 
-/// Pixels and slabs to either side that make up for the rounding of shaders.
+/// Margin in pixels and slabs to either side, for rounding in shaders.
 const SLACK: f64 = 1.0;
 
-/// Tiles of a view's sheets, in the order of their rows for each chunk.
+/// Tiles of a view's sheets for each chunk of slabs, in row order.
 ///
-/// An entry is the tile's column, its row (from bit 15), and a bit for the first chunk in which it occurs
-/// (bit 31).
+/// An entry holds the tile's column, its row (from bit 15), and a bit for the first chunk in which it occurs (bit
+/// 31).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MarchTiles {
     chunks: Vec<Vec<u32>>,
 }
 
 impl MarchTiles {
-    /// Every tile in every chunk of so many slabs.
+    /// Returns every tile in every chunk of `chunk` slabs.
     pub fn all(view: &LightView, chunk: u32) -> Self {
         let mut marked = Marked::new(view, chunk);
         marked.chunks.iter_mut().for_each(|tiles| tiles.fill(true));
         marked.listed()
     }
 
-    /// The tiles that boxes of index space lie behind, from their first corners to their second; where something is read
-    /// behind all sheets, every tile of the first chunk, too, since light has to begin there.
+    /// Returns the tiles, chunk by chunk, that contain parts of boxes of index space, given by their lower and upper
+    /// corners. If transmittance behind all sheets is read, too (`begins_everywhere`), every tile of the first chunk
+    /// is included, where light has to begin.
     pub fn behind(
         view: &LightView,
         scene: &SceneSpace,
@@ -68,14 +69,14 @@ impl MarchTiles {
         marked.listed()
     }
 
-    /// Those of a chunk.
+    /// Returns the tile entries of a chunk.
     pub fn of_chunk(&self, at: usize) -> &[u32] {
         self.chunks.get(at).map_or(&[], Vec::as_slice)
     }
 }
 
-/// The pixels and slabs that a box lies in, from a corner along three edges in the light's axes; `None` if all
-/// of it is behind the light.
+/// Returns the ranges of pixels and slabs that contain a box, given by a corner and three edges in the light's axes;
+/// `None` if it is completely behind the light.
 fn extent(view: &LightView, corner: DVec3, edges: DMat3) -> Option<([DVec2; 2], [f64; 2])> {
     let frame = &view.frame;
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
@@ -98,14 +99,14 @@ fn extent(view: &LightView, corner: DVec3, edges: DMat3) -> Option<([DVec2; 2], 
     (!behind).then_some(([DVec2::NEG_INFINITY, DVec2::INFINITY], slabs))
 }
 
-/// Tiles that are being marked.
+/// Tile marks under construction.
 struct Marked {
-    /// Columns and rows.
+    /// Number of tile columns and rows.
     size: [u32; 2],
-    /// Slabs of a chunk.
+    /// Number of slabs in a chunk.
     chunk: u32,
     chunks: Vec<Vec<bool>>,
-    /// Chunks of which every tile is marked.
+    /// True for chunks of which every tile is marked.
     full: Vec<bool>,
 }
 
@@ -152,7 +153,8 @@ impl Marked {
     }
 }
 
-/// Which of `count` pieces of a length the whole numbers from `low` to `high` lie in.
+/// Returns the range of pieces of a length, out of `count`, that contain the integers around `low` … `high`; `None`
+/// if they are all outside.
 fn whole(low: f64, high: f64, length: f64, count: usize) -> Option<RangeInclusive<usize>> {
     let (first, last) = ((low.floor() / length).floor(), (high.ceil() / length).floor());
     let end = count as f64 - 1.0;

@@ -1,4 +1,4 @@
-//! The geometry of the passes: frames of sheets, bricks and cells, how far samples reach.
+//! Geometry of the passes: sheet frames, bricks and cells, and the reach of samples.
 
 pub(super) mod ahead;
 pub(super) mod brick_set;

@@ -1,4 +1,4 @@
-//! What the volume is made from that holds light which has bounced.
+//! Key of the volume of bounced light.
 
 use super::lit_lights::LitLights;
 use super::one_color::OneColor;
@@ -8,51 +8,52 @@ use super::table::{EyeTableKey, OpacityKey};
 use crate::model::{Classification, Remains, Resolution, Scattering};
 use crate::plan::{Request, VolumeKey};
 
-/// Everything that bounced light is made from: what it meets, in which colours, and all light that there is.
+/// Inputs of the volume of bounced light: the material with its colours, and all light.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BouncesKey {
     volume: VolumeKey,
     opacity: OpacityKey,
-    /// What it bounces off has colours.
+    /// Colours of the material that light bounces off.
     colors: EyeTableKey,
     classification: Classification,
     shading_cut: Remains,
-    /// Each light, and whether material attenuates it.
+    /// Look of each light, with a flag for those that material attenuates.
     lights: Vec<(LightLook, bool)>,
     balance: f64,
-    /// How many points stand for lights that have a size.
+    /// Number of points that represent an area light.
     points: u32,
     sky: Option<SkyLook>,
     emission: f64,
-    /// That of all light, if there is one.
+    /// Single colour of all light, if there is one.
     one_color: Option<OneColor>,
     albedo: f64,
     density_scale: f64,
     bounces: u32,
     directions: u32,
     resolution: Resolution,
-    /// That of previews.
+    /// Resolution of a preview's volume.
     previewed: Resolution,
 }
 
-/// Most points that stand for a light: what has bounced shows no edge of a shadow.
+/// Maximum number of points for an area light: bounced light shows no edges of shadows.
 const MOST_POINTS: u32 = 8;
 
-/// Previews follow so many bounces, in so many directions: the end of the series is told from them nearly as from more.
+/// Maximum number of bounces in previews, with as many directions: the rest of the series is extrapolated from them
+/// nearly as well as from more.
 const PREVIEW_BOUNCES: u32 = 3;
-/// See [`PREVIEW_BOUNCES`].
+/// Maximum number of directions in previews, see [`PREVIEW_BOUNCES`].
 const PREVIEW_DIRECTIONS: u32 = 14;
 
 impl BouncesKey {
-    /// The key of the volume that a picture needs; `None` where no light bounces.
+    /// Creates the key of the volume that a picture needs; `None` if no light bounces.
     pub fn of(request: &Request) -> Option<Self> {
         let settings = &request.settings;
         let Scattering {
             bounces,
             albedo,
-            // Where it is looked up.
+            // Applied where the volume is looked up.
             strength: _,
-            // Of what has not bounced yet.
+            // Applies only to light that has not bounced yet.
             anisotropy: _,
             density_scale,
             directions,
@@ -81,7 +82,7 @@ impl BouncesKey {
         })
     }
 
-    /// The key of a preview's volume.
+    /// Returns the key of a preview's volume.
     #[must_use]
     pub fn coarse(&self) -> Self {
         Self {
@@ -93,32 +94,32 @@ impl BouncesKey {
         }
     }
 
-    /// The colour of all light, if there is one.
+    /// Returns the single colour of all light, if there is one.
     pub fn one_color(&self) -> Option<OneColor> {
         self.one_color
     }
 
-    /// How many bounces are followed.
+    /// Returns the number of simulated bounces.
     pub fn bounces(&self) -> u32 {
         self.bounces
     }
 
-    /// In how many directions light is followed on its last bounce.
+    /// Returns the number of directions in which light is followed on its last bounce.
     pub fn directions(&self) -> u32 {
         self.directions
     }
 
-    /// And on all before.
+    /// Returns the number of directions for all bounces except the last.
     pub fn directions_of_a_bounce(&self) -> u32 {
         Scattering::directions_of_a_bounce(self.directions)
     }
 
-    /// How finely.
+    /// Returns the resolution of the volume.
     pub fn resolution(&self) -> Resolution {
         self.resolution
     }
 
-    /// How many points stand for lights that have a size.
+    /// Returns the number of points that represent an area light.
     pub fn points(&self) -> u32 {
         self.points
     }

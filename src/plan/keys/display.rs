@@ -1,23 +1,23 @@
-//! What the shown picture is made from, besides its linear light.
+//! Key of the displayed picture, apart from its linear light.
 
 use crate::model::{Depth, Output};
 use crate::plan::{PixelWindow, RenderOptions, Request};
 
-/// Everything that turns linear light into what is shown: nothing else depends on it, so that a change of it costs
-/// one display pass.
+/// Inputs of the conversion from linear light to the displayed picture: nothing else depends on them, so that a
+/// change costs only one display pass.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DisplayKey {
     output: Output,
     transparent: bool,
     exposure: f32,
-    /// Background gradients span the whole picture.
+    /// Displayed part; background gradients span the whole picture.
     shown: PixelWindow,
     samples: u32,
     depth: Depth,
 }
 
 impl DisplayKey {
-    /// The key of what a request shows.
+    /// Creates the key of the displayed picture of a request.
     pub fn of(request: &Request, options: &RenderOptions) -> Self {
         Self {
             output: request.settings.output.clone(),
@@ -29,7 +29,7 @@ impl DisplayKey {
         }
     }
 
-    /// What the same request shows with another exposure.
+    /// Returns the key with another exposure.
     #[must_use]
     pub fn exposed(self, exposure: f32) -> Self {
         Self { exposure, ..self }

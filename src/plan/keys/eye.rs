@@ -1,4 +1,4 @@
-//! What linear pictures are made from: the volume as the eye sees it, and the floor under it.
+//! Keys of linear pictures: the volume as seen by the eye, and the floor below it.
 
 use super::bounces::BouncesKey;
 use super::light::LightKey;
@@ -12,7 +12,7 @@ use crate::model::{
 };
 use crate::plan::{CombinedKey, PixelWindow, RenderOptions, Request, VolumeKey};
 
-/// Everything that the eye pass makes a linear picture from.
+/// Inputs of the linear picture of the eye pass.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EyeKey {
     volume: VolumeKey,
@@ -20,36 +20,36 @@ pub struct EyeKey {
     camera: Camera,
     curve: EyeTableKey,
     shading: Shading,
-    /// The length to which gradients of surfaces refer.
+    /// Length to which gradients of surfaces refer.
     unit: Length,
     sampling: SamplingKey,
     seen: Remains,
     shading_cut: Remains,
     received: ReceivedLight,
     lights: Vec<EyeLightKey>,
-    /// Diffuse light of all shadowed lights, which are not among `lights` then.
+    /// Combined diffuse light of all shadowed lights, which are then absent from `lights`.
     combined: Option<CombinedKey>,
-    /// The sky, and the volume that says how open to it each place is.
+    /// Sky, and the volume of its visibility.
     sky: Option<SkyLook>,
     sky_volume: Option<SkyKey>,
-    /// Light that has bounced, in a volume, and what is shown of it; and where matter scatters light on its first bounce.
+    /// Volume of bounced light with the factor of its display, and the anisotropy of the first scattering.
     bounces: Option<(BouncesKey, f64)>,
     anisotropy: f64,
-    /// What rays to lights meet, where samples cast them.
+    /// Inputs of shadow rays, if samples cast any.
     rays: Option<RaysKey>,
     options: RenderOptions,
 }
 
-/// A light, and what attenuates it.
+/// Look of a light, and its attenuation.
 #[derive(Debug, Clone, PartialEq)]
 struct EyeLightKey {
     look: LightLook,
     attenuation: Attenuation,
-    /// The volume from which its attenuation is read, if it has one.
+    /// Key of its attenuation volume, if it has one.
     volume: Option<LightKey>,
 }
 
-/// How sheets are filled.
+/// Inputs of the sampling of sheets.
 #[derive(Debug, Clone, PartialEq)]
 struct SamplingKey {
     kernel: Kernel,
@@ -59,11 +59,11 @@ struct SamplingKey {
     gradients: Gradients,
     classification: Classification,
     engine: Engine,
-    /// Only scattering has an order.
+    /// Sheet order, if the scattering engine is used.
     order: Option<SheetOrder>,
 }
 
-/// What rays from samples or from the floor to lights meet.
+/// Inputs of shadow rays from samples or from the floor to lights.
 #[derive(Debug, Clone, PartialEq)]
 struct RaysKey {
     opacity: OpacityKey,
@@ -94,8 +94,8 @@ impl RaysKey {
 }
 
 impl EyeKey {
-    /// The key of the picture that is made with these light volumes, one for each light of the settings that has
-    /// any, or with their combination; and with these volumes of the sky and of bounced light.
+    /// Creates the key of the picture that is made with these light volumes, one for each light of the settings that
+    /// has any, or with their combination; and with these volumes of sky visibility and of bounced light.
     pub fn of(
         request: &Request,
         options: &RenderOptions,
@@ -108,9 +108,9 @@ impl EyeKey {
             schema: _,
             camera,
             lights: _,
-            // In the key of the volume.
+            // Part of the volume's key.
             range: _,
-            // In the keys of the volume and of the tables.
+            // Parts of the keys of the volume and of the tables.
             labels: _,
             transfer: _,
             lighting: _,
@@ -124,7 +124,7 @@ impl EyeKey {
             sampling: _,
             output: _,
             kept: _,
-            // In the identity of the volume that it is made into.
+            // Part of the identity of the corrected volume.
             volume: _,
         } = settings;
         let lit = LitLights::of(settings);
@@ -158,7 +158,7 @@ impl EyeKey {
     }
 }
 
-/// Options as far as they say how light is computed: not how it is shown, nor how the work is cut.
+/// Returns the options that affect the computation of light, with those of display and scheduling reset.
 fn computing(options: &RenderOptions) -> RenderOptions {
     RenderOptions {
         transparent: false,
@@ -170,10 +170,10 @@ fn computing(options: &RenderOptions) -> RenderOptions {
     }
 }
 
-/// Everything that the floor pass makes the light on the floor from.
+/// Inputs of the light on the floor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FloorKey {
-    /// What covers it, under which lights.
+    /// Volume in front of the floor, and its lights.
     eye: EyeKey,
     floor: Floor,
     rays: RaysKey,
@@ -182,7 +182,7 @@ pub struct FloorKey {
 }
 
 impl FloorKey {
-    /// The key of the floor under a picture; `None` without floor.
+    /// Creates the key of the floor under a picture; `None` if there is no floor.
     pub fn of(request: &Request, eye: &EyeKey) -> Option<Self> {
         let settings = &request.settings;
         settings.floor.on.then(|| Self {

@@ -1,4 +1,4 @@
-//! What the attenuation volume of a light is made from.
+//! Key of a light's attenuation volume.
 
 use super::table::{OpacityKey, TransmissionKey};
 use crate::model::{
@@ -7,17 +7,17 @@ use crate::model::{
 };
 use crate::plan::{Request, VolumeKey};
 
-/// Everything that one light's attenuation volume is made from.
+/// Inputs of the attenuation volume of one light.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LightKey {
     volume: VolumeKey,
     kind: LightKind,
-    /// The position, or for a parallel light the direction: moving it outwards changes nothing.
+    /// Position, or for a parallel light the direction, so that moving it outwards changes nothing.
     placed: [f64; 3],
-    /// Angles of the hood, if there is one.
+    /// Angles of the hood in degrees, if there is one.
     hood_deg: Option<[f64; 2]>,
     density_scale: f64,
-    /// How large it is, and from how many points it is followed; `None` of a point.
+    /// Area of the light, and the number of points on it; `None` for a point light.
     area: Option<(LightArea, u32)>,
     algorithm: ShadowAlgorithm,
     classification: Classification,
@@ -27,7 +27,7 @@ pub struct LightKey {
     first_touch: bool,
     deposit: Deposit,
     kernel: Kernel,
-    /// Only what is gathered back has one of its own.
+    /// Reverse kernel, which only the gathering engine has.
     reverse_kernel: ReverseKernel,
     slab: f64,
     quadrature: Quadrature,
@@ -36,48 +36,48 @@ pub struct LightKey {
     shading_cut: Remains,
 }
 
-/// Previews follow lights that have a size from so many points.
+/// Maximum number of points on an area light in previews.
 const PREVIEW_SAMPLES: u32 = 16;
 
 impl LightKey {
-    /// The key of this light's volume for a preview, at a resolution that is no finer.
+    /// Returns the key of this light's volume for a preview, at a resolution that is no finer.
     #[must_use]
     pub fn coarse(&self, resolution: Resolution) -> Self {
         let area = self.area.map(|(area, samples)| (area, samples.min(PREVIEW_SAMPLES)));
         Self { resolution: resolution.max(self.resolution), area, ..self.clone() }
     }
 
-    /// How many point lights stand for the light.
+    /// Returns the number of point lights that represent the light.
     pub fn samples(&self) -> u32 {
         self.area.map_or(1, |(_, samples)| samples)
     }
 
-    /// Whether there is a transmittance for each colour of light.
+    /// Returns true if there is a transmittance for each colour channel.
     pub fn has_colors(&self) -> bool {
         self.transmission.is_some()
     }
 
-    /// Resolution of the light volume.
+    /// Returns the resolution of the light volume.
     pub fn resolution(&self) -> Resolution {
         self.resolution
     }
 
-    /// How its values are stored.
+    /// Returns the storage format of transmittances.
     pub fn precision(&self) -> Precision {
         self.precision
     }
 
-    /// The key of light `index` of a request; `None` when it needs no attenuation volume.
+    /// Creates the key of light `index` of a request; `None` if it needs no attenuation volume.
     pub fn of(request: &Request, index: usize) -> Option<Self> {
         let Settings {
             schema: _,
             camera,
             lights,
-            // In the key of the volume.
+            // Part of the volume's key.
             range: _,
-            // In those of the volume and of opacities.
+            // Parts of the keys of the volume and of opacities.
             labels: _,
-            // In the key of opacities.
+            // Parts of the key of opacities.
             transfer: _,
             lighting: _,
             opacity_unit: _,
@@ -100,7 +100,7 @@ impl LightKey {
                 },
             output: _,
             kept: _,
-            // In the identity of the volume that it is made into.
+            // Part of the identity of the corrected volume.
             volume: _,
         } = &request.settings;
         let light = lights.get(index)?.in_scene(camera);
@@ -118,7 +118,7 @@ impl LightKey {
         let hooded = *hooded && *kind == LightKind::Perspective;
         let Shadows {
             algorithm,
-            // In the resolution of soft light.
+            // Part of the resolution of soft light.
             least_blocks: _,
             strength: _,
             ambient_offset: _,
@@ -136,7 +136,7 @@ impl LightKey {
             precision,
             storage: _,
             reverse_kernel,
-            // Where it is looked up.
+            // Applied where light is looked up.
             near_field: _,
             area: AreaShadows { samples, resolution: _ },
         } = shadows;
@@ -170,7 +170,7 @@ impl LightKey {
             },
             slab: *slab,
             quadrature: *quadrature,
-            // One volume for all lights has one resolution.
+            // A combined volume has one resolution for all lights.
             resolution: if request.settings.combines_lights() {
                 shadows.resolution
             } else {

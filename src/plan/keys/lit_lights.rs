@@ -1,38 +1,38 @@
-//! The lights of a picture, resolved once: eye, floor and light passes share their order.
+//! Lights of a picture, resolved once, in the order that eye, floor and light passes share.
 
 use crate::model::{MAX_LIGHTS, SceneLight, Settings, ShadowAlgorithm};
 
-/// How material attenuates a light on its way.
+/// Method by which a light's attenuation is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Attenuation {
-    /// Not at all.
+    /// No attenuation: the light casts no shadows.
     None,
-    /// As its light volume says.
+    /// Lookup in the light's attenuation volume.
     Volume,
-    /// By a ray from every sample.
+    /// Ray to the light from every sample.
     Rays,
 }
 
-/// A light that is on.
+/// Light that is switched on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LitLight {
-    /// Place of the light in the settings.
+    /// Index of the light in the settings.
     pub index: usize,
-    /// Where and what it is.
+    /// Light resolved into scene space.
     pub light: SceneLight,
-    /// What attenuates it.
+    /// Method of its attenuation.
     pub attenuation: Attenuation,
 }
 
 impl LitLight {
-    /// Whether material attenuates it.
+    /// Returns true if material attenuates the light.
     pub fn is_shadowed(&self) -> bool {
         self.attenuation != Attenuation::None
     }
 }
 
-/// The lights of a picture that are on, those that material attenuates first, each kind in the order of the
-/// settings: the order in which shaders expect them.
+/// Lights of a picture that are on: those that material attenuates first, each group in the order of the settings.
+/// Shaders expect this order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LitLights(Vec<LitLight>);
 
@@ -56,18 +56,18 @@ impl LitLights {
         Self(lights)
     }
 
-    /// All of them.
+    /// Returns all lights that are on.
     pub fn all(&self) -> &[LitLight] {
         &self.0
     }
 
-    /// Those that material attenuates, which come first.
+    /// Returns the lights that material attenuates, which come first.
     pub fn shadowed(&self) -> &[LitLight] {
         let count = self.0.iter().take_while(|lit| lit.is_shadowed()).count();
         &self.0[..count]
     }
 
-    /// Those that nothing attenuates, which come last.
+    /// Returns the lights without shadows, which come last.
     pub fn unshadowed(&self) -> &[LitLight] {
         &self.0[self.shadowed().len()..]
     }

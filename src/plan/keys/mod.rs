@@ -1,7 +1,7 @@
-//! Keys: what each product of the renderer is made from.
+//! Keys: the inputs of each product of the renderer.
 //!
-//! A product is kept together with its key, and is stale exactly when the key that a picture needs differs.
-//! Settings are taken apart without `..`, so that a new field does not compile until it is classified.
+//! A product is cached together with its key, and is stale exactly if the key that a picture needs differs. Settings
+//! are destructured without `..`, so that a new field does not compile until it is classified.
 
 mod bounces;
 mod combined;
@@ -28,32 +28,32 @@ pub use table::{EyeTableKey, OpacityKey, TablesKey};
 
 use super::{RenderOptions, Request, VolumeKey};
 
-/// The keys of everything that a picture needs.
+/// Keys of all products that a picture needs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameKeys {
     /// Density, pyramid and gradients on the GPU.
     pub volume: VolumeKey,
-    /// Both lookup tables, and where they show anything.
+    /// Lookup tables of both transfer functions, and the cells that they show.
     pub tables: TablesKey,
     /// Attenuation volume of each light of the settings, at the resolution of the settings; `None` for lights
     /// without.
     pub lights: Vec<Option<LightKey>>,
-    /// The diffuse light of all of them in one volume, where the settings ask for it.
+    /// Combined diffuse light of all lights, if the settings request it.
     pub combined: Option<CombinedKey>,
-    /// How open to the sky each place is, where there is one.
+    /// Volume of sky visibility, if there is one.
     pub sky: Option<SkyKey>,
-    /// Light that has bounced, where any does.
+    /// Volume of bounced light, if any light bounces.
     pub bounces: Option<BouncesKey>,
     /// Linear light of the volume.
     pub eye: EyeKey,
     /// Linear light on the floor, if there is one.
     pub floor: Option<FloorKey>,
-    /// What is shown of both.
+    /// Display of both on screen or in a file.
     pub display: DisplayKey,
 }
 
 impl FrameKeys {
-    /// The keys of a picture: a pure function of what is asked for.
+    /// Computes the keys of a picture: a pure function of request and options.
     pub fn of(request: &Request, options: &RenderOptions) -> Self {
         let lights: Vec<_> =
             (0..request.settings.lights.len()).map(|index| LightKey::of(request, index)).collect();
@@ -74,7 +74,7 @@ impl FrameKeys {
         }
     }
 
-    /// How many light volumes of this picture another one does not have.
+    /// Returns the number of light volumes of this picture that another picture does not have.
     pub fn lights_missing_in(&self, other: &Self) -> usize {
         self.lights
             .iter()

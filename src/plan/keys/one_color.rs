@@ -1,25 +1,25 @@
-//! Light that has one colour all through.
+//! Detection of scenes in which all light has a single colour.
 
 use glam::DVec3;
 
 use super::lit_lights::LitLights;
 use crate::model::{Settings, linear_from_srgb};
 
-/// The colour that all light of a scene has, where what it bounces off is grey: one number says what a bounce brings, and
-/// the colour comes back at the end.
+/// Colour of all light of a scene, if it is the same everywhere and the material is grey: bounces are then simulated
+/// with one number each, and multiplied by the colour at the end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OneColor {
-    /// Linear; its largest part is 1.
+    /// Linear RGB colour; its largest component is 1.
     pub color: DVec3,
-    /// Which part that is.
+    /// Index of the largest component.
     pub channel: usize,
 }
 
-/// Colours are equal that differ by so much of the largest part: rounding of `f32`.
+/// Tolerance for equal colours, as a share of the largest component: rounding of `f32`.
 const SAME: f64 = 1e-6;
 
 impl OneColor {
-    /// That of what lights material in a look; `None` where there are several, or material has colours.
+    /// Finds the single colour of all light in a look; `None` if there are several, or the material has colours.
     pub fn of(settings: &Settings) -> Option<Self> {
         let is_grey = |color: [f32; 3]| color[0] == color[1] && color[1] == color[2];
         let matter_is_grey = if settings.labels.is_empty() {
@@ -34,7 +34,7 @@ impl OneColor {
         let linear = |color: [f32; 3]| DVec3::from(color.map(|c| linear_from_srgb(f64::from(c))));
         let mut found: Vec<DVec3> = lights.all().iter().map(|lit| linear(lit.light.color)).collect();
         if let Some(sky) = settings.sky.radiance(settings.camera.up) {
-            // What changes with height or to a side, too: of that the colour is what counts, not the sign.
+            // The slopes of a gradient count as well; only their colour matters, not the sign.
             let along = |axis: usize| DVec3::from(sky.slope.map(|slope| slope[axis]));
             found.push(sky.mean.into());
             found.extend([0, 1, 2].map(along));
@@ -50,7 +50,7 @@ impl OneColor {
         found.iter().all(is_of_it).then_some(Self { color, channel })
     }
 
-    /// How much of it some light is.
+    /// Returns the amount of this colour in a light.
     pub fn amount(self, light: DVec3) -> f64 {
         light[self.channel]
     }
@@ -94,7 +94,7 @@ mod tests {
         assert!(with(&|settings| settings.lights[1].color[2] += 0.01).is_none());
         assert!(with(&|settings| settings.sky.mode = SkyMode::White).is_none());
         assert!(with(&|settings| settings.shading.emission = 0.5).is_none());
-        // What is off lights nothing.
+        // A light that is off has no effect.
         let off = with(&|settings| {
             settings.lights[1].color = [0.0, 1.0, 0.0];
             settings.lights[1].on = false;
@@ -108,7 +108,7 @@ mod tests {
             settings.shading.emission = 0.5;
         };
         assert!(with(&white).is_some_and(|one| (one.color - DVec3::ONE).length() < 1e-6));
-        // A gradient from white to black has a slope of the same colour, the other way round.
+        // A gradient from white to black has a slope of the same colour, with the opposite sign.
         let gradient = |settings: &mut Settings| {
             white(settings);
             settings.sky.mode = SkyMode::Gradient;

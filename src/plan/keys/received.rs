@@ -1,25 +1,25 @@
-//! Light as samples receive it: the look of a light, and the cures for darkness.
+//! Light as received by samples: the look of a light, and the cures for darkness.
 
 use crate::model::{Hood, LightArea, LightKind, NearField, SceneLight, Settings, ShadowAlgorithm, Shadows};
 
-/// A light as samples see it: what moving a parallel light outwards does not change.
+/// Look of a light from samples; for a parallel light, only the direction of its position counts.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct LightLook {
     kind: LightKind,
-    /// The position, or for a parallel light the direction.
+    /// Position, or for a parallel light the direction.
     placed: [f64; 3],
     color: [f32; 3],
     intensity: f64,
     hood: Option<Hood>,
     density_scale: f64,
-    /// It lights one side of a surface, or both.
+    /// True if it casts shadows, which also decides whether it lights one side of a surface or both.
     casts_shadows: bool,
-    /// How large it is: its shadows and its highlights show that.
+    /// Area of the light, which affects shadows and highlights.
     area: Option<LightArea>,
 }
 
 impl LightLook {
-    /// What samples see of a light.
+    /// Extracts the look of a light.
     pub(super) fn of(light: &SceneLight) -> Self {
         let SceneLight { kind, position, color, intensity, on: _, casts_shadows, hood, density_scale, area } =
             *light;
@@ -32,7 +32,7 @@ impl LightLook {
     }
 }
 
-/// What becomes of light that arrives: the cures for darkness.
+/// Parameters of light lookups: the cures for darkness.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ReceivedLight {
     algorithm: ShadowAlgorithm,
@@ -45,7 +45,7 @@ pub(super) struct ReceivedLight {
 }
 
 impl ReceivedLight {
-    /// The part of the shadows that acts where light is looked up.
+    /// Extracts the parameters of shadows that apply where light is looked up.
     pub(super) fn of(settings: &Settings) -> Self {
         let Shadows {
             algorithm,
@@ -54,9 +54,9 @@ impl ReceivedLight {
             gain,
             bias_voxels,
             balance,
-            // Nobody sees it.
+            // Without effect on the picture.
             keep_balanced: _,
-            // In the keys of light volumes and of rays.
+            // Parts of the keys of light volumes and of rays.
             transmission: _,
             first_touch: _,
             deposit: _,
@@ -72,7 +72,7 @@ impl ReceivedLight {
             least_blocks: _,
         } = settings.shadows;
         let near_field = settings.near_field();
-        // Rays nearby take the place of a bias.
+        // Near-field rays replace the bias.
         let bias_voxels = if near_field == NearField::Off { bias_voxels } else { 0.0 };
         Self { algorithm, strength, ambient_offset, gain, bias_voxels, balance, near_field }
     }

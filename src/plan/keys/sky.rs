@@ -1,10 +1,10 @@
-//! What the volume is made from that says how open to the sky each place is.
+//! Key of the volume of sky visibility.
 
 use super::table::OpacityKey;
 use crate::model::{Classification, Remains, Resolution, SceneAxis, Settings, SkyMode};
 use crate::plan::{Request, VolumeKey};
 
-/// Everything that the volume of the sky's visibility is made from: no colours, no brightness, no turn.
+/// Inputs of the volume of sky visibility: no colours, no brightness, no rotation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SkyKey {
     volume: VolumeKey,
@@ -14,16 +14,16 @@ pub struct SkyKey {
     density_scale: f64,
     directions: u32,
     resolution: Resolution,
-    /// That of previews.
+    /// Resolution of a preview's volume.
     previewed: Resolution,
 }
 
-/// Previews follow light from so many directions at most: with 6 a tooth's picture is 2.8 % of white from that of 64 (root mean
-/// square), with 14 it is 0.7 %, and with 26 it would be 0.6 %.
+/// Maximum number of directions in previews: with 6, the picture of a tooth differs by 2.8 % of white from that with
+/// 64 (root mean square), with 14 by 0.7 %, and with 26 by 0.6 %.
 const PREVIEW_DIRECTIONS: u32 = 14;
 
 impl SkyKey {
-    /// The key of the volume that a picture needs; `None` where nothing attenuates a sky.
+    /// Creates the key of the volume that a picture needs; `None` if nothing attenuates a sky.
     pub fn of(request: &Request) -> Option<Self> {
         let settings = &request.settings;
         settings.has_sky_volume().then(|| Self {
@@ -38,44 +38,44 @@ impl SkyKey {
         })
     }
 
-    /// The key of a preview's volume.
+    /// Returns the key of a preview's volume.
     #[must_use]
     pub fn coarse(&self) -> Self {
         let directions = self.directions.min(PREVIEW_DIRECTIONS);
         Self { directions, resolution: self.previewed, ..self.clone() }
     }
 
-    /// From how many directions light is followed.
+    /// Returns the number of directions from which light is followed.
     pub fn directions(&self) -> u32 {
         self.directions
     }
 
-    /// How finely.
+    /// Returns the resolution of the volume.
     pub fn resolution(&self) -> Resolution {
         self.resolution
     }
 
-    /// What multiplies the extinction.
+    /// Returns the factor of the extinction.
     pub fn density_scale(&self) -> f64 {
         self.density_scale
     }
 }
 
-/// A sky as samples see it.
+/// Look of a sky from samples.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct SkyLook {
     mode: SkyMode,
     intensity: f64,
     colors: [[f32; 3]; 3],
     lean_deg: [f64; 2],
-    /// Of a picture of surroundings: their mean, and its slopes.
+    /// Mean radiance of an environment map, and its slopes.
     picture: Option<([f64; 3], [[f64; 3]; 3])>,
-    /// What it leans from.
+    /// Axis relative to which the sky is tilted.
     up: Option<SceneAxis>,
 }
 
 impl SkyLook {
-    /// What samples see; `None` where there is no sky.
+    /// Extracts the look of the sky; `None` if there is none.
     pub(super) fn of(settings: &Settings) -> Option<Self> {
         let sky = &settings.sky;
         let is_plain = sky.mode == SkyMode::White;

@@ -1,27 +1,26 @@
-//! What the lookup tables of the transfer functions are made from.
+//! Keys of the lookup tables of the transfer functions.
 
 use crate::model::{
     Easing, Interpolation, LabelMaterial, Length, LightingTransfer, Mixing, Settings, TransferFunction,
 };
 use crate::plan::{Request, VolumeKey};
 
-/// Everything that both lookup tables are made from, besides the volume.
+/// Inputs of both lookup tables.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TablesKey {
-    /// Volume whose shown range and bricks they refer to.
+    /// Volume whose shown range and bricks the tables refer to.
     pub volume: VolumeKey,
-    /// What the eye sees.
+    /// Transfer function of the eye.
     pub eye: EyeTableKey,
-    /// What the light meets.
+    /// Opacities of the material that attenuate light.
     pub lighting: OpacityKey,
-    /// Which colours of it, where shadows are coloured.
+    /// Transmission colours of the material, if shadows are coloured.
     pub transmission: Option<TransmissionKey>,
-    /// Whether the bounds of cells hold for all kernels in use.
+    /// True if the bounds of cells hold for all kernels in use.
     pub cells_are_bounds: bool,
 }
 
-/// Everything that the eye's table is made from: the curve with its colours, or looks of labels, and the length to which
-/// it refers.
+/// Inputs of the eye's table: the curve with its colours, or looks of labels, and the opacity unit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EyeTableKey {
     looks: Looks,
@@ -34,7 +33,7 @@ enum Looks {
     OfLabels(Vec<LabelMaterial>),
 }
 
-/// Everything that the opacities met by light are made from: no colours.
+/// Inputs of the opacities that attenuate light: no colours.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OpacityKey {
     opacities: Opacities,
@@ -42,7 +41,7 @@ pub struct OpacityKey {
     unit: Length,
 }
 
-/// Everything that the shares of extinction which each colour of light meets are made from, besides opacities.
+/// Inputs of the extinction of each colour channel, apart from opacities.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TransmissionKey {
     colors: Colors,
@@ -62,7 +61,7 @@ enum Opacities {
 }
 
 impl TablesKey {
-    /// The key of both tables of a picture.
+    /// Creates the key of both tables of a picture.
     pub(super) fn of(request: &Request) -> Self {
         let settings = &request.settings;
         Self {
@@ -76,7 +75,7 @@ impl TablesKey {
 }
 
 impl EyeTableKey {
-    /// The key of what the eye sees in a look.
+    /// Creates the key of the eye's table in a look.
     pub(super) fn of(settings: &Settings) -> Self {
         let looks = if settings.labels.is_empty() {
             Looks::OfValues(settings.transfer.clone())
@@ -88,7 +87,7 @@ impl EyeTableKey {
 }
 
 impl OpacityKey {
-    /// The key of what light meets in a look.
+    /// Creates the key of the opacities that attenuate light in a look.
     pub(super) fn of(settings: &Settings) -> Self {
         let LightingTransfer { linked, scale, curve } = &settings.lighting;
         let opacities = if settings.labels.is_empty() {
@@ -107,7 +106,7 @@ impl OpacityKey {
 }
 
 impl TransmissionKey {
-    /// The key of what light of each colour meets in a look; `None` where shadows are grey.
+    /// Creates the key of the colour channels' extinction in a look; `None` if shadows are grey.
     pub(super) fn of(settings: &Settings) -> Option<Self> {
         let colors = || {
             if !settings.labels.is_empty() {

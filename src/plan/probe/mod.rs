@@ -1,5 +1,4 @@
-//! What is at a point of the picture, and what light gets there: answers for a pointer, on the CPU, by
-//! single rays.
+//! Probe of the picture at a point: value, opacity and arriving light, computed on the CPU by single rays.
 
 mod rays;
 
@@ -11,47 +10,47 @@ use crate::math::luminance;
 use crate::model::{BakedTransfer, LightKind, SceneLight, Settings, Sides};
 use crate::plan::sweep_directions;
 
-/// What is seen somewhere in the picture.
+/// Probe result at a position of the picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Probe {
-    /// In scene space.
+    /// Position in scene space.
     pub point: DVec3,
-    /// In index space.
+    /// Position in index space.
     pub index: DVec3,
-    /// In millimetres, as the file places it.
+    /// Position in world space, in millimetres.
     pub world_mm: DVec3,
-    /// The value there, in data units.
+    /// Value of the volume, in data units.
     pub value: f64,
-    /// Opacity there, per opacity unit of the eye's transfer function.
+    /// Opacity per opacity unit of the eye's transfer function.
     pub opacity: f64,
-    /// What gets there, for every light of the settings.
+    /// Light that arrives, for every light of the settings.
     pub lights: Vec<Arrival>,
-    /// How open it is to the sky, if there is one: 1 for a place or a surface with nothing in the way.
+    /// Sky visibility, if there is a sky: 1 for a position or a surface with nothing in the way.
     pub sky: Option<f64>,
 }
 
-/// What of a light arrives at a point.
+/// Arriving part of a light at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Arrival {
-    /// Share that material lets through, 0 … 1; 1 for lights that cast no shadows.
+    /// Transmittance of the material, 0 … 1; 1 for lights that cast no shadows.
     pub transmittance: f64,
-    /// Share that the hood lets through.
+    /// Share that the hood lets through, 0 … 1.
     pub hood: f64,
-    /// Cosine between the surface's normal and the direction to the light, never less than 0 where both sides are lit;
-    /// `None` where nothing is a surface.
+    /// Cosine between the surface's normal and the direction to the light, never negative if both sides are lit;
+    /// `None` where there is no surface.
     pub facing: Option<f64>,
-    /// Between which distances from the point, in scene units, most of what is lost on the way from the light's middle is
-    /// lost; none where hardly anything is, or where the light casts no shadows.
+    /// Range of distances from the point, in scene units, in which most of the light from the light's centre is lost;
+    /// `None` if hardly any is, or if the light casts no shadows.
     pub blocked: Option<[f64; 2]>,
 }
 
-/// Rays to the sky: a few milliseconds.
+/// Number of rays to the sky: a few milliseconds.
 const PROBED_DIRECTIONS: u32 = 64;
 
-/// Rays to each light that has a size, at most: of what it loses a reader sees whole per cents.
+/// Maximum number of rays to each area light: losses are displayed in whole per cent.
 const PROBED_POINTS: u32 = 16;
 
-/// Looks along a ray (in scene space) and says what is seen there; `None` if nothing is.
+/// Traces a ray (in scene space) and returns the probe at the first visible position; `None` if nothing is visible.
 pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVec3) -> Option<Probe> {
     let volume = &volume.showing(settings.shown(&volume.ranges()));
     let (settings, range) = (&*settings.as_drawn(volume), volume.table_range());
@@ -62,12 +61,12 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
     let seen = settings.cuts.seen().region(scene);
     let point = rays.first_seen(&eye, &seen, origin, direction)?;
     let index = scene.index_from_scene.transform_point3(point);
-    // As the file has it, beyond what is shown, too.
+    // Not clamped to the shown range.
     let value = rays.value(index, &eye);
     let lighting = settings.baked_lighting(range, scene);
     let met_by_colors = settings.has_colored_shadows().then(|| [0, 1, 2].map(|color| lighting.met_by(color)));
     let is_one_sided = settings.shading.sides == Sides::One;
-    // Opacity falls towards high densities: into a solid, too, in which it rises.
+    // True if opacity falls towards high densities; never for solid labels, in which it rises.
     let falls = is_one_sided && !is_by_label && eye.side(rays.field(index, &eye).0) < 0.0;
     let turned = if falls { -1.0 } else { 1.0 };
     let normal = rays.gradient(point, &seen, turned, &eye).normalize_or_zero() * -turned;
@@ -81,7 +80,7 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
                 rays.optical_depth(&lighting, &shading_cut, Way { point, towards, distance: f64::INFINITY });
             (-depth * settings.sky.density_scale).exp()
         };
-        // Of a surface, the share of the half of the sky that it faces, each direction by its cosine.
+        // For a surface, sky visibility over the hemisphere that it faces, weighted by the cosine.
         let facing = |towards: DVec3| if normal == DVec3::ZERO { 1.0 } else { normal.dot(towards).max(0.0) };
         let directions = sweep_directions(PROBED_DIRECTIONS);
         let open: f64 = directions.iter().map(|&towards| facing(towards) * left(towards)).sum();
@@ -93,7 +92,7 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
         .map(|light| {
             let light = light.in_scene(&settings.camera);
             let is_shadowed = light.needs_volume() && settings.shadows.algorithm.is_on();
-            // The mean over what shines of it.
+            // The mean over points of an area light.
             let points = light.points(settings.shadows.area.samples.min(PROBED_POINTS));
             let mean =
                 |of: &dyn Fn(&SceneLight) -> f64| points.iter().map(of).sum::<f64>() / points.len() as f64;
@@ -114,7 +113,7 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
             };
             let middle = way(&light, point);
             let blocked = is_shadowed.then(|| rays.blocked(&lighting, &shading_cut, middle)).flatten();
-            // Of a light that has a size, what has risen of it.
+            // For an area light, the part above the surface's horizon.
             let risen = light.risen(point, normal, 1.0);
             let facing = if is_one_sided && light.casts_shadows { risen.facing } else { risen.middle.abs() };
             Arrival {
@@ -136,7 +135,7 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
     })
 }
 
-/// The way from a point to a light.
+/// Returns the segment from a point to a light.
 fn way(light: &SceneLight, point: DVec3) -> Way {
     let distance = match light.kind {
         LightKind::Parallel => f64::INFINITY,
@@ -151,7 +150,7 @@ mod tests {
     use crate::data::Samples;
     use crate::model::{ControlPoint, Length, Light, LightShape, ShadowAlgorithm, SkyMode, TransferFunction};
 
-    /// A slab of stuff at z = 10 … 13 over a block at z = 0 … 5.
+    /// Makes a slab at z = 10 … 13 over a block at z = 0 … 5.
     fn slab_over_block() -> (Volume, Settings) {
         let n = 16;
         let values = (0..n * n * n)
@@ -188,7 +187,7 @@ mod tests {
         };
         assert_eq!(open(&settings, DVec3::new(0.0, 0.0, 3.0)), None);
         settings.sky.mode = SkyMode::White;
-        // The top of the block, from the side, under the slab and without it.
+        // The top of the block, seen from the side, with and without the slab above it.
         let aside = DVec3::new(-3.0, 0.0, 0.4);
         let below = open(&settings, aside).unwrap();
         let mut bare = settings.clone();
@@ -215,11 +214,11 @@ mod tests {
         );
     }
 
-    /// Voxels that a file declares as padding, with a value that the curve shows, are neither seen nor counted.
+    /// Tests that voxels declared as padding, with a value that the curve shows, are neither visible nor attenuating.
     #[test]
     fn what_is_missing_is_not_met() {
         let (volume, mut settings) = slab_over_block();
-        // What is seen is a face, not the middle of what lies behind it.
+        // Opaque, so that the probe hits a face and not the middle of the layer.
         settings.transfer.points[1].opacity = 0.99;
         let look = |volume: &Volume| probe(volume, &settings, DVec3::new(0.0, 0.0, 3.0), DVec3::NEG_Z);
         let without_slab = volume.clone().with_padding(0.5).expect("the block");
@@ -231,7 +230,7 @@ mod tests {
             seen.expect("the block's side").lights[0].transmittance
         });
         assert!(uncovered > 2.0 * below, "{uncovered} {below}");
-        // Beside voxels that are missing, too, the value is that of voxels which are there; and the surface faces them.
+        // Beside missing voxels, the value is that of present ones, and the surface faces the missing ones.
         let layers = look(&volume.with_padding(0.0).expect("the layers")).expect("the slab");
         assert!((layers.value - 0.5).abs() < 1e-6, "{layers:?}");
         assert!(layers.lights[0].facing.is_some_and(|facing| facing > 0.9), "{layers:?}");
@@ -245,7 +244,7 @@ mod tests {
             probe(&volume, settings, DVec3::new(0.0, 0.0, 3.0), DVec3::NEG_Z).expect("something")
         };
         let whole = look(&settings);
-        // Between the layers: the upper one is cut away.
+        // The plane between the layers cuts away the upper one.
         settings.cuts.plane =
             ClipPlane { on: true, normal: [0.0, 0.0, 1.0], offset: 0.1, ..ClipPlane::default() };
         let below = look(&settings);
@@ -256,18 +255,18 @@ mod tests {
         assert!(shaded.lights[0].transmittance < 0.4 * below.lights[0].transmittance, "{shaded:?} {below:?}");
         settings.cuts.plane.effect = CutEffect::Shadowless;
         assert_eq!(look(&settings).index, whole.index);
-        // Through the block: the face looks where the plane does.
+        // A plane through the block: its face has the plane's normal.
         settings.cuts.plane =
             ClipPlane { on: true, normal: [0.0, 0.6, 0.8], offset: -0.5, ..ClipPlane::default() };
         let facing = look(&settings).lights[0].facing.expect("a face");
         assert!((facing - 0.8).abs() < 0.2, "{facing}");
     }
 
-    /// The same layers with values turned around, under the curve turned around, face the same way.
+    /// Tests that layers with inverted values, under an inverted curve, face the same way.
     #[test]
     fn surfaces_face_where_opacity_falls() {
         let (volume, mut settings) = slab_over_block();
-        // What is seen is the slab's face, not its middle.
+        // Opaque, so that the probe hits the slab's face and not its middle.
         settings.transfer.points[1].opacity = 0.99;
         let from_above = |volume: &Volume, settings: &Settings| {
             let seen = probe(volume, settings, DVec3::new(0.0, 0.0, 3.0), DVec3::NEG_Z);
@@ -284,7 +283,7 @@ mod tests {
             point.value = 1.0 - point.value;
         }
         assert!((from_above(&turned, &settings) - rising).abs() < 1e-6);
-        // Lit from below it faces away, unless both sides are lit.
+        // Lit from below, the surface faces away, unless both sides are lit.
         settings.lights[0].position = [0.0, 0.0, -3.0];
         assert!(from_above(&turned, &settings) < -0.9);
         settings.shading.sides = Sides::Two;
@@ -295,7 +294,7 @@ mod tests {
     fn of_labels_one_is_met_and_none_between_two() {
         use crate::model::LabelLook;
         let n = 16;
-        // A box of label 9 in a box of label 3, with nothing around.
+        // A box of label 9 inside a box of label 3, with nothing around.
         let value = |at: usize| {
             let [x, y, z] = [at % n, at / n % n, at / n / n].map(|c| c.abs_diff(8).max(c.abs_diff(7)));
             match x.max(y).max(z) {
@@ -328,7 +327,7 @@ mod tests {
     #[test]
     fn it_is_said_where_light_is_lost() {
         let (volume, settings) = slab_over_block();
-        // The top of the block at z = 5.5, below the slab at 9.5 … 13.5: an eighth of a scene unit each.
+        // The top of the block at z = 5.5, below the slab at 9.5 … 13.5: eight voxels are one scene unit.
         let from = DVec3::new(-3.0, 0.0, 0.4);
         let towards = (DVec3::new(0.0, 0.0, -0.3) - from).normalize();
         let seen = probe(&volume, &settings, from, towards).expect("the block's top");
@@ -343,8 +342,8 @@ mod tests {
     #[test]
     fn of_a_light_with_a_size_the_mean_arrives() {
         let (volume, mut settings) = slab_over_block();
-        // The block's side, below the slab: a light straight above is hidden; of one as wide as it is far away some is seen
-        // beside the slab.
+        // The block's side, below the slab: a light straight above is hidden; part of an area light as wide as its
+        // distance is visible beside the slab.
         let arriving = |settings: &Settings| {
             let seen = probe(&volume, settings, DVec3::new(-3.0, 0.0, -0.375), DVec3::X);
             seen.expect("the block's side").lights[0].transmittance

@@ -1,4 +1,4 @@
-//! A volume along single rays: where something is seen, what attenuates light, which way surfaces face.
+//! Single rays through a volume on the CPU: first visible position, attenuation of light, surface normals.
 
 use glam::DVec3;
 
@@ -6,42 +6,42 @@ use crate::data::{Missing, Volume};
 use crate::math::{Bounds, Region, SceneSpace};
 use crate::model::BakedTransfer;
 
-/// Share of the light to the eye that must have been met for something to count as seen: half.
+/// Share of the ray's total opacity at which a position counts as visible: half.
 const SEEN: f64 = 0.5;
 
-/// Less than this share of a ray's light met: nothing is seen.
+/// Opacity of a ray below which nothing is visible.
 const NOTHING: f64 = 0.03;
 
-/// The optical depth of what hardly dims a light: a tenth.
+/// Optical depth below which a light is hardly attenuated: a tenth.
 const LITTLE: f64 = 0.1;
 
-/// Share of a loss that lies before what is called its place, and behind it: the surface that is seen takes some, too.
+/// Share of the loss that is excluded at either end of its range: the visible surface causes some, too.
 const ENDS: f64 = 0.25;
 
-/// Voxel edges (the smallest) per step of a ray.
+/// Step of a ray, in edges of the smallest voxel.
 const STEP: f64 = 0.5;
 
-/// The way from a point towards a light.
+/// Segment from a point towards a light.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Way {
-    /// Where it begins, in scene space.
+    /// Start of the segment, in scene space.
     pub(super) point: DVec3,
-    /// Of length 1.
+    /// Unit vector towards the light.
     pub(super) towards: DVec3,
-    /// How far away the light is, in scene units; it may be infinitely far.
+    /// Distance to the light in scene units; may be infinite.
     pub(super) distance: f64,
 }
 
-/// A volume and what makes it visible, for single rays.
+/// Volume and scene for tracing single rays.
 pub(super) struct Rays<'a> {
     pub(super) volume: &'a Volume,
     pub(super) scene: SceneSpace,
-    /// Voxels are classified, and then what they are is mixed.
+    /// True if voxels are classified before interpolation.
     pub(super) is_by_label: bool,
 }
 
 impl Rays<'_> {
-    /// The box of the voxels, in index space: nothing lies outside.
+    /// Returns the box of voxel centres, in index space: there is nothing outside.
     fn grid(&self) -> Bounds {
         Bounds::of_grid(self.volume.dims(), 0.0)
     }
@@ -50,7 +50,7 @@ impl Rays<'_> {
         STEP * self.scene.smallest_edge()
     }
 
-    /// Where a ray enters what remains of the grid and where it leaves it, from its origin on.
+    /// Returns the distances at which a ray enters and leaves the uncut part of the grid, not before its origin.
     fn span(&self, remains: &Region, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
         let origin = self.scene.index_from_scene.transform_point3(origin);
         let direction = self.scene.index_from_scene.transform_vector3(direction);
@@ -59,7 +59,7 @@ impl Rays<'_> {
         (enter < leave).then_some((enter, leave))
     }
 
-    /// Where half of what a ray meets has been met.
+    /// Returns the position at which a ray has reached half of its total opacity.
     pub(super) fn first_seen(
         &self,
         table: &BakedTransfer,
@@ -86,12 +86,12 @@ impl Rays<'_> {
         Some(origin + direction * at)
     }
 
-    /// Steps from one beyond a point towards a light, each as its distance and the optical depth of what it meets: what is
-    /// seen does not shade itself.
+    /// Iterates over the steps of a ray towards a light, as distance and optical depth. It starts one step away from
+    /// the point, so that a surface does not shade itself.
     fn steps(&self, table: &BakedTransfer, remains: &Region, way: Way) -> impl Iterator<Item = (f64, f64)> {
         let Way { point, towards, distance } = way;
         let step = self.step();
-        // Where there is nothing on the way there are no steps.
+        // A ray that misses the grid has no steps.
         let (enter, leave) = self.span(remains, point, towards).unwrap_or_default();
         let first = (enter / step).ceil().max(1.0) as usize;
         let last = (leave.min(distance) / step).floor().max(1.0) as usize;
@@ -101,13 +101,13 @@ impl Rays<'_> {
         })
     }
 
-    /// ∫ extinction from a step beyond a point towards a light.
+    /// Returns ∫ extinction towards a light, from one step away from a point.
     pub(super) fn optical_depth(&self, table: &BakedTransfer, remains: &Region, way: Way) -> f64 {
         self.steps(table, remains, way).map(|(_, depth)| depth).sum()
     }
 
-    /// Between which distances from a point towards a light all but a quarter of its loss at either end happens; none where
-    /// hardly anything is lost.
+    /// Returns the range of distances from a point towards a light that contains all of the loss except a quarter at
+    /// either end; `None` if hardly anything is lost.
     pub(super) fn blocked(&self, table: &BakedTransfer, remains: &Region, way: Way) -> Option<[f64; 2]> {
         let mut sum = 0.0;
         let met: Vec<(f64, f64)> = self
@@ -131,13 +131,14 @@ impl Rays<'_> {
         table.sample(density)[3] * there
     }
 
-    /// The extinction of a voxel with that value.
+    /// Returns the extinction of a voxel with the given value.
     fn voxel_extinction(&self, table: &BakedTransfer, value: f64) -> f64 {
         table.sample(self.volume.density_of(value))[3]
     }
 
-    /// What surfaces are found in, and the share of the voxels nearby that are there: the density between voxels, linearly;
-    /// that of the border beyond it; 0 where no voxel nearby is there. Among labels whether there is material.
+    /// Returns the field in which surfaces are found, and the presence: the density, interpolated linearly, clamped
+    /// at the border, and 0 where no voxel nearby is present. For labels, 1 in material and 0 outside is interpolated
+    /// instead.
     pub(super) fn field(&self, index: DVec3, table: &BakedTransfer) -> (f64, f64) {
         self.between_voxels(index, |value| {
             if self.is_by_label {
@@ -148,13 +149,14 @@ impl Rays<'_> {
         })
     }
 
-    /// The value between voxels, linearly; of labels the one of which most is seen, or is there at all.
+    /// Returns the value, interpolated linearly between voxels; for labels, the most visible one nearby, or any that
+    /// is present.
     pub(super) fn value(&self, index: DVec3, table: &BakedTransfer) -> f64 {
         if !self.is_by_label {
             return self.between_voxels(index, |value| value).0;
         }
         let dims = self.volume.dims();
-        // A voxel that is not seen counts where all around it are not seen either.
+        // An invisible voxel counts only if all around it are invisible, too.
         let seen = |value: f64| self.voxel_extinction(table, value).max(1e-12);
         let mut parts: Vec<(f64, f64)> = Vec::new();
         for (voxel, weight) in self.around(index) {
@@ -175,7 +177,7 @@ impl Rays<'_> {
         self.volume.missing().is_some_and(|missing: &Missing| missing.contains(voxel))
     }
 
-    /// The voxels around a point, with their weights.
+    /// Iterates over the eight voxels around a point, with their linear weights.
     fn around(&self, index: DVec3) -> impl Iterator<Item = ([usize; 3], f64)> {
         let dims = self.volume.dims();
         let last = DVec3::from(dims.map(|n| (n - 1) as f64));
@@ -191,7 +193,7 @@ impl Rays<'_> {
         })
     }
 
-    /// The mean of what the voxels around a point that are there are, by their weights, and the sum of these.
+    /// Returns the weighted mean of `of` over the present voxels around a point, and the sum of their weights.
     fn between_voxels(&self, index: DVec3, of: impl Fn(f64) -> f64) -> (f64, f64) {
         let dims = self.volume.dims();
         let (mut sum, mut there) = (0.0, 0.0);
@@ -205,8 +207,8 @@ impl Rays<'_> {
         if there > 0.0 { (sum / there, there) } else { (0.0, 0.0) }
     }
 
-    /// ∇ of the field in scene space, by central differences over a voxel, and `turned` times that of a solid of density 1
-    /// which ends where voxels are missing, at the faces of the grid and where it is cut.
+    /// Returns ∇ of the field in scene space, by central differences over a voxel, plus `turned` times that of a
+    /// solid of density 1 which ends at missing voxels, at the faces of the grid and at cuts.
     pub(super) fn gradient(&self, point: DVec3, seen: &Region, turned: f64, table: &BakedTransfer) -> DVec3 {
         let edge = self.scene.smallest_edge();
         let seen = seen.within(&self.grid());

@@ -1,4 +1,4 @@
-//! Where the camera stands, so that a volume's object fills the picture.
+//! Camera framing: places the camera so that a volume's object fills the frame, and the floor under the object.
 
 mod outline;
 
@@ -9,29 +9,29 @@ use super::object::Object;
 use crate::data::Volume;
 use crate::model::{Camera, FRAME_ASPECT, Fit, Settings};
 
-/// Share of the frame's height, or of its width, that the object fills: whichever it reaches first.
+/// Share of the frame's height or width that the object fills, whichever it reaches first.
 const FILL: f64 = 0.8;
 
-/// The most that it fills when rays become parallel, which show what is near no larger than what is far: all of it.
+/// Largest share that it fills in orthographic projection, which shows near parts no larger than distant ones.
 const FILL_PARALLEL: f64 = 0.98;
 
-/// The furthest that the eye goes: what is smaller then is next to nothing.
+/// Largest camera distance, in scene units: smaller objects are next to nothing.
 const FURTHEST: f64 = 20.0;
 
-/// Share of the outline that may lie beyond each of the sides that the frame is made for: a few voxels of noise.
+/// Share of outline points that may lie beyond each side of the frame: a few voxels of noise.
 const BEYOND: f64 = 0.0005;
 
-/// Share of the outline that may lie below the floor: single voxels of noise.
+/// Share of outline points that may lie below the floor: single voxels of noise.
 const BELOW_FLOOR: f64 = 0.001;
 
-/// The height along `up` below which next to nothing of an outline lies.
+/// Returns the height along `up` below which only noise of an outline lies.
 fn floor_under(outline: &[DVec3], up: DVec3) -> f64 {
     let mut heights: Vec<f64> = outline.iter().map(|point| point.dot(up)).collect();
     let at = (heights.len() as f64 * BELOW_FLOOR) as usize;
     *heights.select_nth_unstable_by(at, f64::total_cmp).1
 }
 
-/// Where all but [`BEYOND`] of some points lie along an axis.
+/// Returns the range of points along an axis, without a share of [`BEYOND`] at either end.
 fn range(points: &[DVec2], along: impl Fn(&DVec2) -> f64) -> [f64; 2] {
     let mut values: Vec<f64> = points.iter().map(along).collect();
     let beyond = (values.len() as f64 * BEYOND) as usize;
@@ -39,13 +39,13 @@ fn range(points: &[DVec2], along: impl Fn(&DVec2) -> f64) -> [f64; 2] {
     [beyond, last - beyond].map(|at| *values.select_nth_unstable_by(at, f64::total_cmp).1)
 }
 
-/// The outline of an object in scene space.
+/// Returns the outline of an object in scene space.
 fn corners(volume: &Volume, object: &Object) -> Vec<DVec3> {
     let scene_from_index = volume.scene().scene_from_index;
     object.outline().into_iter().map(|point| scene_from_index.transform_point3(point)).collect()
 }
 
-/// Puts the floor under the object, if there is one.
+/// Puts the floor under the object; without an object it is not moved.
 pub(super) fn lay_floor(settings: &mut Settings, volume: &Volume, object: &Object) {
     let corners = corners(volume, object);
     if !corners.is_empty() {
@@ -54,17 +54,17 @@ pub(super) fn lay_floor(settings: &mut Settings, volume: &Volume, object: &Objec
     }
 }
 
-/// Points the camera at the object, near enough that it fills the frame, which lies within pictures of any shape. Puts
-/// the floor under it.
+/// Points the camera at the object, close enough that it fills the frame, which lies within images of any aspect
+/// ratio, and puts the floor under it.
 pub(super) fn frame(settings: &mut Settings, volume: &Volume, object: &Object) {
     frame_points(&mut settings.camera, &corners(volume, object));
     lay_floor(settings, volume, object);
 }
 
-/// Points a camera at some points of the scene from where it looks, near enough that they fill the frame.
+/// Points a camera at scene points without rotating it, close enough that they fill the frame.
 fn frame_points(camera: &mut Camera, corners: &[DVec3]) {
     camera.fit = Fit::Frame;
-    // From where first looks begin: the same view is framed in the same way, whatever it was framed as before.
+    // Starts from the default distance, so that the result does not depend on the previous camera.
     camera.distance = Camera::default().distance;
     if corners.is_empty() {
         return;
@@ -73,9 +73,9 @@ fn frame_points(camera: &mut Camera, corners: &[DVec3]) {
     let half_angle_tan = camera.half_height_at_target(FRAME_ASPECT) / camera.distance;
     let low = corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
     let high = corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-    // What turns about the target stays in the picture if that lies within the object, also as far as it is from the eye.
+    // A target within the object, also in depth, keeps it in the image when orbiting.
     let mut target = (low + high) / 2.0;
-    // Three rounds: under perspective the middle depends on the distance, and the distance on the middle.
+    // Three iterations: in perspective the centre depends on the distance, and the distance on the centre.
     for _ in 0..3 {
         let eye = target + view.z_axis * camera.distance;
         let seen: Vec<DVec2> = corners
@@ -94,7 +94,7 @@ fn frame_points(camera: &mut Camera, corners: &[DVec3]) {
         target += (view.x_axis * middle.x + view.y_axis * middle.y) * camera.distance;
         let half = (high - low) / 2.0;
         let wanted = FILL * half_angle_tan;
-        // In units of the distance, as seen from the new target.
+        // In units of the distance, relative to the new target.
         let parallel = corners.iter().fold(DVec2::ZERO, |most, corner| {
             let local = view.transpose() * (*corner - target);
             most.max(DVec2::new(local.x, local.y).abs() / camera.distance)
@@ -107,7 +107,7 @@ fn frame_points(camera: &mut Camera, corners: &[DVec3]) {
         camera.distance = (camera.distance * factor).clamp(0.3, FURTHEST);
     }
     camera.target = target.into();
-    // Things that are much longer than wide, seen from their end, take more rounds.
+    // Elongated objects, seen from their end, need more iterations.
     camera.distance = camera.distance.max(outline::least_distance(corners, camera)).min(FURTHEST);
 }
 
@@ -128,7 +128,8 @@ mod tests {
         assert!(settings.camera.distance > 1.0 && settings.camera.distance < 8.0);
     }
 
-    /// A ball of six voxels in the corner of a volume that is nearest to the usual eye, and in the one that is furthest.
+    /// Tests a ball of six voxels in the corner of a volume that is nearest to the default camera, and in the
+    /// farthest one.
     #[test]
     fn the_camera_turns_about_the_object_wherever_it_lies() {
         let n = 48;
@@ -153,7 +154,7 @@ mod tests {
         }
     }
 
-    /// Where the shown voxels of a volume lie in a picture: corners of the box around them, in pixels.
+    /// Returns the bounding box of the visible voxels in an image, in pixels.
     fn seen_box(settings: &Settings, volume: &Volume, size: DVec2) -> [DVec2; 2] {
         let pixels = Object::shown_by(settings, volume).outline().into_iter().map(|point| {
             let point = volume.scene().scene_from_index.transform_point3(point);
@@ -176,15 +177,16 @@ mod tests {
                 let [low, high] = seen_box(&settings, &volume, size);
                 let margin = (low / size).min((size - high) / size).min_element();
                 assert!(margin >= 0.05, "{name} in {size}: a margin of {margin}");
-                // The largest frame in the picture.
+                // Largest frame in the image.
                 let height = size.y.min(size.x / FRAME_ASPECT);
                 let filled = ((high - low) / DVec2::new(height * FRAME_ASPECT, height)).max_element();
                 assert!(filled >= 0.6, "{name} in {size}: fills {filled} of the frame");
-                // Parallel rays show what is far away larger: of a whole cube, a little more than the margin.
+                // Orthographic projection shows distant parts larger: for a whole cube, a little more than the
+                // margin.
                 let [low, high] = seen_box(&parallel, &volume, size);
                 assert!(low.min_element() > 0.0 && (size - high).min_element() > 0.0, "{name} in {size}");
             }
-            // With the angle of the height, a narrow picture cuts it off.
+            // With the field of view of the height, a narrow image cuts it off.
             settings.camera.fit = Fit::Height;
             let size = DVec2::new(200.0, 800.0);
             let [low, high] = seen_box(&settings, &volume, size);

@@ -1,4 +1,4 @@
-//! Where the object ends that settings show of a volume: what views are framed by.
+//! Outline of the visible object of a volume, by which views are framed.
 
 use glam::DVec3;
 
@@ -7,23 +7,23 @@ use super::{corners, frame_points};
 use crate::data::Volume;
 use crate::model::{Camera, FRAME_ASPECT, Projection, Settings};
 
-/// Share of the frame that what turns may reach: all but a breath of it.
+/// Share of the frame that the object may reach when orbiting: all but a small margin.
 const FULL: f64 = 0.98;
 
-/// How much further away than what is nearest the eye stays where rays are parallel.
+/// Smallest orthographic camera distance, as a multiple of the depth of the nearest part in front of the target.
 const BEHIND: f64 = 1.05;
 
-/// Share of the outline that may lie outside: single voxels of noise.
+/// Share of outline points that may lie outside: single voxels of noise.
 const OUTSIDE: f64 = 0.001;
 
-/// The outline of an object, in scene space.
+/// Outline of an object as points in scene space.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Outline {
     points: Vec<DVec3>,
 }
 
 impl Outline {
-    /// The outline of what settings show of a volume, but for specks, tables and what is cut away. This goes through all
+    /// Computes the outline of what settings show of a volume, without specks, tables and clipped parts. Reads all
     /// voxels.
     pub fn of(settings: &Settings, volume: &Volume) -> Self {
         let mut points = corners(volume, &Object::shown_by(settings, volume));
@@ -36,27 +36,27 @@ impl Outline {
         Self { points }
     }
 
-    /// Whether there is nothing to frame.
+    /// Returns true if there is nothing to frame.
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
 
-    /// Points a camera at the object from where it looks, near enough that this fills the frame.
+    /// Points a camera at the object without rotating it, close enough that the object fills the frame.
     pub fn frame(&self, camera: &mut Camera) {
         if !self.is_empty() {
             frame_points(camera, &self.points);
         }
     }
 
-    /// The least distance from its target at which a camera has the object in its frame, from where it looks; 0 where
-    /// there is none.
+    /// Returns the least distance from its target at which a camera has the object in its frame, without rotating it;
+    /// 0 without an object.
     pub fn least_distance(&self, camera: &Camera) -> f64 {
         least_distance(&self.points, camera)
     }
 }
 
-/// The least distance from its target at which a camera has all but [`OUTSIDE`] of some points in its frame; 0 where there
-/// are none.
+/// Returns the least distance from its target at which a camera has all but a share of [`OUTSIDE`] of the points in
+/// its frame; 0 without points.
 pub(super) fn least_distance(points: &[DVec3], camera: &Camera) -> f64 {
     if points.is_empty() {
         return 0.0;
@@ -70,9 +70,9 @@ pub(super) fn least_distance(points: &[DVec3], camera: &Camera) -> f64 {
             let local = view.transpose() * (*point - target);
             let aside = (local.y.abs() / up).max(local.x.abs() / (up * FRAME_ASPECT));
             match camera.projection {
-                // What is nearer to the eye than the target by z is larger.
+                // Points closer to the camera than the target by z appear larger.
                 Projection::Perspective => aside + local.z,
-                // Nothing may be behind the eye.
+                // No point may be behind the camera.
                 Projection::Orthographic => aside.max(local.z * BEHIND),
             }
         })
@@ -87,7 +87,7 @@ mod tests {
     use crate::data::{Histogram, Samples};
     use crate::model::auto::first_settings;
 
-    /// A bar along x in a corner of a volume.
+    /// Returns a bar along x in a corner of a volume.
     fn bar() -> Volume {
         let n = 48;
         let value = |at: usize| {
@@ -98,7 +98,7 @@ mod tests {
         Volume::with_spacing("bar", [n; 3], DVec3::ONE, voxels).unwrap()
     }
 
-    /// How far the object reaches in a 4:3 picture: 1 is the border.
+    /// Returns the extent of the object in a 4:3 image: 1 is the border.
     fn reach(outline: &Outline, camera: &Camera) -> f64 {
         let reach = outline.points.iter().map(|point| {
             let (x, y, _) = camera.pixel_from_scene(*point, 400.0, 300.0).unwrap();
@@ -120,7 +120,7 @@ mod tests {
                 assert!((0.4..=1.0).contains(&reached), "{projection:?} {azimuth_deg}: {reached}");
                 camera.distance = outline.least_distance(&camera);
                 let reached = reach(&outline, &camera);
-                // Where rays are parallel, a long object seen from its end needs a place for the eye.
+                // In orthographic projection, a long object seen from its end needs room for the camera.
                 let least = if projection == Projection::Perspective { FULL - 0.02 } else { 0.1 };
                 assert!((least..FULL + 0.02).contains(&reached), "{projection:?} {azimuth_deg}: {reached}");
             }
@@ -136,7 +136,7 @@ mod tests {
         settings.cuts.crop.high[0] = 0.5;
         let half = Outline::of(&settings, &volume);
         assert!(half.points.len() < whole.points.len() && !half.is_empty());
-        // Where nothing is left, all of it is framed.
+        // With everything clipped, the whole object is framed.
         settings.cuts.crop.high[0] = 0.02;
         assert_eq!(Outline::of(&settings, &volume), whole);
         assert_eq!(Outline::default().least_distance(&settings.camera), 0.0);

@@ -1,42 +1,42 @@
-//! Colours by what is shown. All are about equally light, so that light and shadow carry the shape, and colour says what
-//! it is.
+//! Colour palettes by domain. All are about equally light, so that shading conveys the shape, and colour the
+//! material.
 
 use super::domain::Domain;
 use crate::model::srgb_from_lch;
 
-/// A colour in Oklab: lightness, chroma, hue in degrees.
+/// Colour in Oklab: lightness, chroma, hue in degrees.
 type Lch = [f64; 3];
 
-/// Colours from where an object begins to its brightest parts.
+/// Colours from the beginning of an object to its brightest parts, at equal steps.
 pub(super) struct Palette(&'static [Lch]);
 
-/// The lightest and darkest that palettes may be: between them shading is told from colour (white paper lies at 0.97,
-/// terracotta at 0.55).
+/// Lightness range of palettes: within it, shading is distinguishable from colour (white paper has 0.97, terracotta
+/// 0.55).
 #[cfg(test)]
 const LIGHTNESS: std::ops::RangeInclusive<f64> = 0.6..=0.96;
 
-/// What nobody knows anything of: sand to ivory, the warmth of a photograph of plaster.
+/// Palette for unknown data: sand to ivory, the warmth of a photograph of plaster.
 const UNKNOWN: Palette = Palette(&[[0.68, 0.052, 62.0], [0.79, 0.044, 74.0], [0.92, 0.026, 88.0]]);
 
-/// Muscle to fat.
+/// Palette for soft tissue: muscle to fat.
 const SOFT_TISSUE: Palette = Palette(&[[0.66, 0.088, 38.0], [0.76, 0.07, 54.0], [0.88, 0.045, 76.0]]);
 
-/// Ivory.
+/// Palette for bone, in shades of ivory.
 const BONE: Palette = Palette(&[[0.74, 0.06, 66.0], [0.84, 0.045, 82.0], [0.94, 0.022, 92.0]]);
 
-/// Warm grey to ivory.
+/// Palette for magnetic resonance: warm grey to ivory.
 const MAGNETIC_RESONANCE: Palette = Palette(&[[0.69, 0.026, 52.0], [0.8, 0.022, 70.0], [0.93, 0.016, 88.0]]);
 
-/// Steel, hardly blue.
+/// Palette for metal: steel, hardly blue.
 const METAL: Palette = Palette(&[[0.68, 0.01, 255.0], [0.78, 0.008, 250.0], [0.9, 0.005, 245.0]]);
 
-/// The green of the most common dye.
+/// Palette for fluorescence: the green of the most common dye.
 const FLUORESCENCE: Palette = Palette(&[[0.66, 0.13, 150.0], [0.78, 0.125, 148.0], [0.92, 0.075, 140.0]]);
 
-/// Cool white.
+/// Palette for molecules: cool white.
 const MOLECULE: Palette = Palette(&[[0.74, 0.04, 248.0], [0.84, 0.028, 240.0], [0.95, 0.01, 230.0]]);
 
-/// Blue over green to yellow, in even steps of hue and lightness.
+/// Palette for simulations: blue over green to yellow, in even steps of hue and lightness.
 const SIMULATION: Palette = Palette(&[
     [0.66, 0.105, 256.0],
     [0.71, 0.09, 222.0],
@@ -46,11 +46,12 @@ const SIMULATION: Palette = Palette(&[
     [0.9, 0.125, 94.0],
 ]);
 
-/// Blue, and red as light and as colourful; pale near zero, which is not shown.
+/// Palettes for negative and positive values: blue, and red of the same lightness and chroma; pale near zero, which
+/// is hidden.
 const NEGATIVE: Palette = Palette(&[[0.8, 0.05, 250.0], [0.71, 0.12, 252.0], [0.64, 0.155, 256.0]]);
 const POSITIVE: Palette = Palette(&[[0.8, 0.05, 40.0], [0.71, 0.125, 32.0], [0.64, 0.17, 28.0]]);
 
-/// A light neutral for what has no values.
+/// Light neutral colour for masks, which have no values.
 pub(super) const PLAIN: [f64; 3] = [0.86, 0.02, 80.0];
 
 impl Palette {
@@ -67,12 +68,12 @@ impl Palette {
         }
     }
 
-    /// For what is below zero, and for what is above: from zero outwards.
+    /// Returns the palette of negative or of positive values, from zero outwards.
     pub(super) fn diverging(is_negative: bool) -> &'static Self {
         if is_negative { &NEGATIVE } else { &POSITIVE }
     }
 
-    /// The sRGB colour at a place from 0 to 1, mixed in Oklab along lightness, chroma and hue.
+    /// Returns the sRGB colour at a position from 0 to 1, mixed in Oklab along lightness, chroma and hue.
     pub(super) fn at(&self, place: f64) -> [f32; 3] {
         srgb_from_lch(self.lch_at(place))
     }
@@ -104,7 +105,7 @@ mod tests {
                 let place = f64::from(step) / 50.0;
                 let (wanted, found) = (palette.lch_at(place), shown(palette.at(place)));
                 assert!(LIGHTNESS.contains(&found[0]), "{found:?}");
-                // A display can show it: nothing was cut.
+                // The colour is in the display's gamut: nothing was clipped.
                 assert!(
                     (wanted[0] - found[0]).abs() < 0.01 && (wanted[1] - found[1]).abs() < 0.01,
                     "{wanted:?} {found:?}"
@@ -139,7 +140,7 @@ mod tests {
             .collect();
         let (least, most) = steps.iter().fold((f64::INFINITY, 0.0f64), |(a, b), &s| (a.min(s), b.max(s)));
         assert!(most < 2.0 * least, "{least} to {most}");
-        // Lighter all the way.
+        // Lightness increases throughout.
         assert!((0..50).all(
             |s| SIMULATION.lch_at(f64::from(s) / 50.0)[0] < SIMULATION.lch_at(f64::from(s + 1) / 50.0)[0]
         ));

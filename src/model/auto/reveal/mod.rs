@@ -1,5 +1,5 @@
-//! Sees to it that a first look hides no material: where one lies within another and next to nothing of it is seen, the
-//! outer one becomes a veil.
+//! Revealing hidden materials in the first look: if an inner material is hardly visible, the outer one becomes a
+//! veil.
 
 mod skin;
 mod visibility;
@@ -15,30 +15,31 @@ use crate::model::{Settings, TransferFunction};
 pub(super) use skin::added as with_skin;
 use visibility::Cells;
 
-/// What share of the object's voxels another material takes: not a few specks, nor nearly all.
+/// Share of the object's voxels that an inner material may take: not a few specks, nor nearly all.
 const OF_VOXELS: std::ops::RangeInclusive<f64> = 0.01..=0.7;
 
-/// Materials are apart in the histogram where between them is less than this share of what is at the peak of the outer
-/// one. Of 25 scans and simulations, textures of one material (tissue, concrete, noise) have 0.73 and more, and things of
-/// two (skin and bone, dentine and enamel, a head and its holder) at most 0.35.
+/// Depth of the histogram's valley between two materials, relative to the outer one's peak, below which they are
+/// separate. Of 25 scans and simulations, textures of one material (tissue, concrete, noise) have 0.73 and more, and
+/// objects of two (skin and bone, dentine and enamel, a head and its holder) at most 0.35.
 const DEEPEST_OF_PEAK: f64 = 0.5;
 
-/// A material is in pieces, not in grains: of noise and of thin walls between others less is inside.
+/// Smallest compactness of a material: noise and thin walls between others are less compact.
 const LEAST_COMPACT: f64 = 0.6;
 
-/// Share of what is seen below which a material is hidden, and the share that it should have then. A skull behind skin has
-/// 0.04 to 0.07, from whichever side; what is nobody's to reveal, as the core of an atom, 0.15 and more.
+/// Share of visible light below which a material is hidden, and the share that it should have afterwards. A skull
+/// behind skin has 0.04 to 0.07 from any side; materials that need no revealing, such as the core of an atom, 0.15
+/// and more.
 const HIDDEN: f64 = 0.1;
 const REVEALED: f64 = 0.5;
 
-/// How much of its opacity an outer material keeps, the first that reveals what it hides.
+/// Opacity factors of the outer material, tried in order until the inner one is revealed.
 const VEILS: [f64; 5] = [0.5, 0.25, 0.12, 0.06, 0.03];
 
-/// Half the width over which histograms are smoothed before their valleys are looked at, in bins: an eightieth of the
-/// scale, three steps of 8-bit data.
+/// Half the width of the smoothing of histograms before valleys are searched, in bins: an eightieth of the scale,
+/// three steps of 8-bit data.
 const SMOOTHING: usize = 12;
 
-/// The settings with a veil around what they hide; as they are where they hide nothing.
+/// Returns the settings with a veil around a hidden material; unchanged if none is hidden.
 pub(super) fn revealed(settings: Settings, volume: &Volume, histogram: &Histogram) -> Settings {
     let Some(density) = inner_material(&settings, volume, histogram) else { return settings };
     let Some(cells) = Cells::of(volume, settings.opacity_unit) else { return settings };
@@ -59,7 +60,8 @@ pub(super) fn revealed(settings: Settings, volume: &Volume, histogram: &Histogra
     }
 }
 
-/// The density at which a second material begins within what settings show; `None` where there is but one.
+/// Returns the density at which an inner material begins within the visible object; `None` if there is only one
+/// material.
 fn inner_material(settings: &Settings, volume: &Volume, histogram: &Histogram) -> Option<f64> {
     let bins = histogram.counts.len();
     let first = volume.density_of(settings.transfer.points.first()?.value);
@@ -71,7 +73,7 @@ fn inner_material(settings: &Settings, volume: &Volume, histogram: &Histogram) -
     if !OF_VOXELS.contains(&inside) || split <= start {
         return None;
     }
-    // Of a part of the histogram alone: what is beside it does not reach into it.
+    // Smoothed within one part of the histogram: counts beside it are not included.
     let smooth = |part: &Range<usize>, at: usize| {
         let (low, high) = (at.saturating_sub(SMOOTHING).max(part.start), (at + SMOOTHING + 1).min(part.end));
         object.counts[low..high].iter().sum::<u64>() as f64 / (high - low) as f64
@@ -94,7 +96,7 @@ mod tests {
     use crate::data::Samples;
     use crate::model::auto::first_settings;
 
-    /// A ball of a dense and of a less dense material, the dense one with a middle and a radius.
+    /// Returns a ball of a dense material, with a centre and a radius, in a ball of a less dense one.
     fn balls(outer: f64, middle: [f64; 3], radius: f64, dense: u8) -> Volume {
         const N: usize = 48;
         let value = |at: usize| {
@@ -127,7 +129,7 @@ mod tests {
 
     #[test]
     fn what_is_seen_or_alone_stays_opaque() {
-        // Beside it, before it, and no other.
+        // The dense ball beside the other, in front of it, and without a difference in density.
         for volume in [
             balls(12.0, [0.0, 0.0, 16.0], 7.0, 220),
             balls(20.0, [8.0, -10.0, 9.0], 12.0, 220),

@@ -1,15 +1,15 @@
-//! Skin as a veil around bones: it says what they belong to, where it does not hide them.
+//! Translucent skin around bones in CT: a veil that shows the body without hiding the bones.
 
 use super::visibility::Cells;
 use super::{frame, transfer};
 use crate::data::Volume;
 use crate::model::{Rig, Settings};
 
-/// Share of what is seen of bones that must be left behind skin. Four walls of a veil, two of skin and two of the lungs,
-/// leave nine tenths; a bowel full of gas, or noise in place of air, is a fog.
+/// Smallest share of the bones' visibility that must be left behind skin. Four layers of veil, two of skin and two of
+/// the lungs, leave nine tenths; a bowel full of gas, or noise in air, is a fog.
 const LEAST_KEPT: f64 = 0.75;
 
-/// The settings with a body around the bones that they show, and framed with it, unless that would hide them.
+/// Returns the settings with skin around the visible bones, framed with it, unless that would hide the bones.
 pub(in crate::model::auto) fn added(settings: Settings, volume: &Volume, water: f64) -> Settings {
     let Some(first_bone) = settings.transfer.points.first() else { return settings };
     let Some(cells) = Cells::of(volume, settings.opacity_unit) else { return settings };
@@ -33,7 +33,7 @@ mod tests {
     use crate::data::{Histogram, KindName, Samples, Volume};
     use crate::model::auto::{Wishes, first_settings_with};
 
-    /// Opacity of skin and of bone around a bone in flesh in what is around it.
+    /// Returns the opacities of skin and of bone around a bone in flesh, with the given background.
     fn opacities(around: impl Fn(usize) -> i16) -> [f64; 2] {
         const N: usize = 40;
         let value = |at: usize| {

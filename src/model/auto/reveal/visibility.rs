@@ -1,31 +1,31 @@
-//! How much of what an eye sees is of which density: each cell of a volume counts with the light that it keeps away, as
-//! far as light from the eye comes to it (Correa & Ma 2011). That is the light volume of a headlight, in cells.
+//! Visibility histogram: the share of each density in what the camera sees. Each cell counts with the light that it
+//! absorbs, attenuated by the cells in front of it (Correa & Ma 2011): the light volume of a headlight, in cells.
 
 use glam::DAffine3;
 
 use crate::data::Volume;
 use crate::model::{Camera, Length, TransferFunction};
 
-/// Most cells along an axis.
+/// Largest number of cells along an axis.
 const MOST_CELLS: usize = 64;
 
-/// Densities are counted in so many bins.
+/// Number of bins of densities.
 const BINS: usize = 256;
 
-/// A volume in cells of a few voxels.
+/// Volume averaged into cells of a few voxels.
 pub(super) struct Cells {
     dims: [usize; 3],
-    /// Bin of the mean density; `None` where there is nothing. x fastest.
+    /// Bin of each cell's mean density, x fastest; `None` where voxels are missing.
     bins: Vec<Option<u8>>,
     scene_from_index: DAffine3,
-    /// Opacity units along a step of one scene unit.
+    /// Number of opacity units per scene unit.
     units_per_scene: f64,
-    /// Data units of each bin.
+    /// Value of each bin in data units.
     values: Vec<f64>,
 }
 
 impl Cells {
-    /// Averages a volume, in which opacities refer to a length.
+    /// Averages a volume into cells; `opacity_unit` is the length to which opacities refer.
     pub(super) fn of(volume: &Volume, opacity_unit: Length) -> Option<Self> {
         let units_per_scene = 1.0 / opacity_unit.in_scene(&volume.scene()).max(1e-9);
         let range = volume.shown();
@@ -45,11 +45,12 @@ impl Cells {
         })
     }
 
-    /// What is seen of each bin of densities by a camera that is far away.
+    /// Returns the visibility of each density bin from a distant camera.
     pub(super) fn seen(&self, function: &TransferFunction, camera: &Camera) -> Vec<f64> {
         let index_from_scene = self.scene_from_index.matrix3.inverse();
         let away = index_from_scene * -camera.scene_from_view().z_axis;
-        // Slices across the axis along which the eye looks most; what lies before a cell is beside it in the slice before.
+        // Slices perpendicular to the dominant axis of the view direction; the cell in front is looked up in the
+        // previous slice.
         let axis = (0..3).max_by(|&a, &b| away[a].abs().total_cmp(&away[b].abs())).unwrap_or(2);
         let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
         let step = away / away[axis].abs().max(1e-9);
@@ -88,13 +89,13 @@ impl Cells {
         seen
     }
 
-    /// The bin of a value.
+    /// Returns the bin of a value.
     pub(super) fn bin_of(&self, value: f64) -> usize {
         self.values.partition_point(|&of_bin| of_bin < value)
     }
 }
 
-/// Light between the cells of a slice; all of it outside.
+/// Interpolates light between the cells of a slice; 1 outside.
 fn between(light: &[f64], [nu, nv]: [usize; 2], [x, y]: [f64; 2]) -> f64 {
     let at = |i: f64, j: f64| {
         let is_inside = i >= 0.0 && j >= 0.0 && i < nu as f64 && j < nv as f64;

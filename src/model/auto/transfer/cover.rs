@@ -1,4 +1,4 @@
-//! A label that hides all others, as skin does in a map of organs: it is shown as a veil.
+//! Enclosing labels: a label that hides all others, such as skin in a map of organs, is shown as a veil.
 
 use std::collections::BTreeMap;
 
@@ -7,18 +7,18 @@ use rayon::prelude::*;
 use crate::data::{CountedLabel, Volume};
 use crate::model::{LabelLook, LabelTable, Length};
 
-/// Share of all faces to what is around labels that a cover has. In maps of organs within a body it is 98 % and more; of
-/// regions beside each other none has a third.
+/// Smallest share of all faces towards the background that a covering label has. In maps of organs within a body it
+/// is 98 % and more; of regions beside each other none has a third.
 const LEAST_OUTSIDE: f64 = 0.9;
 
-/// Share of the faces of all others that border on it: else they lie beside it, and it hides none of them.
+/// Smallest share of the other labels' faces that touch the cover: otherwise they lie beside it, and are not hidden.
 const LEAST_INSIDE: f64 = 0.75;
 
-/// Light that is left behind a veil as thick as a cube of its voxels: enough to tell colours behind it, and little enough
-/// to see that it is there.
+/// Transmittance of a veil as thick as a cube of its voxels: enough to distinguish colours behind it, and little
+/// enough that the veil is visible.
 const LEFT_BEHIND: f64 = 0.75;
 
-/// Makes a veil of a label that hides all others, where opacities refer to a length.
+/// Makes a label that hides all others a veil; `opacity_unit` is the length to which opacities refer.
 pub(in crate::model::auto) fn thin_cover(labels: &mut LabelTable, volume: &Volume, opacity_unit: Length) {
     let Some(CountedLabel { number, voxels }) = cover(volume) else { return };
     let scene = volume.scene();
@@ -27,13 +27,13 @@ pub(in crate::model::auto) fn thin_cover(labels: &mut LabelTable, volume: &Volum
     labels.entry(number).opacity = 1.0 - LEFT_BEHIND.powf(1.0 / thickness.max(1.0));
 }
 
-/// The label that hides all others.
+/// Returns the label that hides all others, if any.
 fn cover(volume: &Volume) -> Option<CountedLabel> {
     let labels = volume.labels().filter(|labels| labels.has_own_classes())?;
     let faces = Faces::of(volume);
     let outside: u64 = faces.outside.values().sum();
     let (&number, &own) = faces.outside.iter().max_by_key(|(_, count)| **count)?;
-    // Faces between two others are within, too.
+    // Faces between two other labels are inside, too.
     let others: u64 =
         faces.outside.iter().filter(|(other, _)| **other != number).map(|(_, count)| count).sum();
     let (mut with_it, mut between) = (0, 0);
@@ -45,12 +45,12 @@ fn cover(volume: &Volume) -> Option<CountedLabel> {
     labels.labels().iter().find(|label| label.number == number && is_cover).copied()
 }
 
-/// Faces between voxels of different labels.
+/// Counts of voxel faces between different labels.
 #[derive(Default)]
 struct Faces {
-    /// Between a label and what is around all of them.
+    /// Number of faces between a label and the background.
     outside: BTreeMap<i64, u64>,
-    /// Between two labels, the lower one first.
+    /// Number of faces between two labels, the lower one first.
     between: BTreeMap<(i64, i64), u64>,
 }
 
@@ -103,7 +103,7 @@ mod tests {
     use super::*;
     use crate::data::Samples;
 
-    /// Balls of labels, each with a middle and a radius; later ones lie over earlier ones.
+    /// Returns balls of labels, each with a centre and a radius; later ones cover earlier ones.
     fn balls(balls: &[(u8, [f64; 3], f64)]) -> Volume {
         const N: usize = 32;
         let label = |at: usize| {
@@ -126,7 +126,7 @@ mod tests {
         let opacity = labels.look(7).opacity;
         assert!((0.005..0.02).contains(&opacity), "{opacity}");
         assert_eq!(labels.len(), 1, "others stay as they are");
-        // Beside each other, one alone, and a speck beside something: each is seen.
+        // Balls side by side, a single one, and a speck beside a ball: all are visible.
         let beside = balls(&[(1, [9.0, 15.5, 15.5], 7.0), (2, [22.0, 15.5, 15.5], 7.0)]);
         let alone = balls(&[(4, middle, 10.0)]);
         let speck = balls(&[(4, middle, 10.0), (5, [2.0; 3], 1.5)]);

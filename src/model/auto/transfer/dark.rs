@@ -1,4 +1,4 @@
-//! An object that is darker than what is around it: opacity rises downwards.
+//! Transfer functions for dark objects on a bright background: opacity rises towards lower values.
 
 use super::super::domain::Domain;
 use super::super::isosurfaces::Isosurfaces;
@@ -7,17 +7,17 @@ use super::super::threshold::{Edge, LEAST_ABOVE, above_margin, border_level, ots
 use super::{Found, Stop, rising, through};
 use crate::data::{Histogram, Volume};
 
-/// Shows what is dark: as what is bright is shown, on a scale that is turned around.
+/// Builds the function as for bright objects, on an inverted scale.
 pub(super) fn find(volume: &Volume, histogram: &Histogram) -> Found {
     let mut counts = histogram.counts.clone();
     counts.reverse();
-    // Darkness: 0 at the highest value, 1 at the lowest.
+    // Darkness is 0 at the highest value, 1 at the lowest.
     let darkness = Histogram { counts, total: histogram.total };
     let split = otsu(&darkness);
-    // How dark the surroundings are, but for a few voxels.
+    // Darkness of the background, without a few voxels.
     let around = border_level(volume, |density| 1.0 - density);
     let margin = if around < split { around } else { 0.0 };
-    // Never so dark that nothing is left.
+    // The limit ensures that something is left.
     let start = above_margin(margin, split).min(1.0 - LEAST_ABOVE);
     let domain = Domain::of_channels(volume).unwrap_or(Domain::Unknown);
     let slope = Isosurfaces::of(volume).slope(1.0 - start).unwrap_or_default();

@@ -1,19 +1,20 @@
-//! Fields that are known in a part of their box only, as statistics of a brain are: outside is exactly zero, or nothing.
+//! Masked fields, known only in a part of their box, such as statistical maps of a brain: outside is exactly zero, or
+//! missing.
 
 use crate::data::Volume;
 
-/// Share of the voxels that are outside at least, and inside at least.
+/// Smallest share of voxels outside the known part, and inside.
 const LEAST_SHARE: f64 = 0.1;
 
-/// How strong the field is where it ends, against the usual strength inside, at least: what was cut out is as strong at
-/// the cut as elsewhere (statistics of brains have 0.7 and more), what fades away is next to nothing where its last digits
-/// are zero.
+/// Smallest ratio of the field's median strength at the mask's edge to that inside: a masked field is as strong at
+/// the edge as elsewhere (statistical maps of brains have 0.7 and more), while a fading one is next to nothing where
+/// its last digits are zero.
 const LEAST_STRENGTH: f64 = 0.3;
 
-/// Voxels of the part in which a field is known; `None` where it is known everywhere, or fades away.
+/// Returns the number of voxels in the known part of a field; `None` if it is known everywhere, or fades out.
 pub(super) fn known_part(volume: &Volume) -> Option<usize> {
     let [nx, ny, nz] = volume.dims();
-    // Every voxel of some rows: of two million voxels enough.
+    // Complete rows, subsampled: two million voxels are enough.
     let step = volume.voxel_count().div_ceil(1 << 21).max(1);
     let strength = |voxel: usize| {
         let is_missing = volume.missing().is_some_and(|missing| missing.contains(voxel));
@@ -38,7 +39,7 @@ pub(super) fn known_part(volume: &Volume) -> Option<usize> {
     (has_end && is_cut).then_some((share * volume.voxel_count() as f64) as usize)
 }
 
-/// The value in the middle; `None` of nothing.
+/// Returns the median; `None` of an empty slice.
 fn median(values: &mut [f64]) -> Option<f64> {
     let middle = values.len() / 2;
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)

@@ -1,4 +1,4 @@
-//! Something or nothing: a surface halfway between the two.
+//! Transfer functions for binary masks: a surface halfway between the two values.
 
 use super::super::palette::PLAIN;
 use super::super::threshold::otsu;
@@ -7,16 +7,16 @@ use crate::data::{DataKind, Histogram, Volume};
 use crate::model::srgb_from_lch;
 use crate::model::{ControlPoint, TransferFunction};
 
-/// How far from halfway the surface begins and is opaque, as a share of the way: a surface, not a haze; and not so
+/// Half the width of the surface's opacity ramp, as a share of the values' range: a surface, not a haze; and not so
 /// sharp that voxels show.
 const WIDTH: f64 = 0.1;
 
-/// Shows one of the two.
+/// Returns a function that shows the higher of the two values.
 pub(super) fn transfer(volume: &Volume, histogram: &Histogram) -> TransferFunction {
     let range = volume.ranges().robust;
     let half = match volume.kind().kind {
         DataKind::Mask => range.at(0.5),
-        // Treated as one: whatever splits it best.
+        // For other data treated as a mask, Otsu's split.
         _ => volume.value_of(otsu(histogram)),
     };
     let width = WIDTH * range.span();

@@ -1,4 +1,4 @@
-//! Transfer functions by the kind of data.
+//! Automatic transfer functions by the kind of data.
 
 mod cover;
 mod dark;
@@ -25,24 +25,24 @@ pub(super) use self::labels::{lost_labels, range as range_of_labels, table as la
 pub(super) use self::scalar::beginning_at;
 pub(super) use self::veil::{inner, scale_opacity, unveiled, veiled};
 
-/// What is shown of a volume, and what it is.
+/// Transfer function found for a volume, with its domain.
 pub(super) struct Found {
     pub(super) transfer: TransferFunction,
-    /// Of label maps alone.
+    /// Label table, for label maps only.
     pub(super) labels: LabelTable,
     pub(super) domain: Domain,
-    /// Something of it is too clear to count as shown, and is to be framed all the same.
+    /// True if a part is too transparent to count as visible, and still has to be framed.
     pub(super) has_veil: bool,
 }
 
 impl Found {
-    /// A look of values.
+    /// Creates a result without labels and without a veil.
     fn of_values(transfer: TransferFunction, domain: Domain) -> Self {
         Self { transfer, labels: LabelTable::default(), domain, has_veil: false }
     }
 }
 
-/// A transfer function for data of a kind.
+/// Finds the transfer function for a kind of data.
 pub(super) fn find(volume: &Volume, histogram: &Histogram, kind: DataKind) -> Found {
     match kind {
         DataKind::Mask => Found::of_values(mask::transfer(volume, histogram), Domain::Unknown),
@@ -61,27 +61,27 @@ pub(super) fn find(volume: &Volume, histogram: &Histogram, kind: DataKind) -> Fo
     }
 }
 
-/// A point before its value and its colour are known: how far along the scale, along the palette, and how opaque.
+/// Control point before its colour is known: value, position in the palette, and opacity.
 struct Stop {
     value: f64,
     place: f64,
     opacity: f64,
 }
 
-/// How much of the way to the bulk the first step of opacity takes, at least and at most.
+/// Length of the first opacity ramp as a share of the way to the bulk: minimum and maximum.
 const FIRST_STEP: (f64, f64) = (0.15, 0.8);
 
-/// Where opacities rise on a scale from 0 to 1, of which `histogram` counts the values, for an object that begins at a
-/// place of it: (place on the scale, place in the palette, opacity per unit).
+/// Returns the opacity ramp of an object that begins at `start`, on a scale of 0 … 1 whose values `histogram` counts:
+/// (position on the scale, position in the palette, opacity per unit).
 fn rising(histogram: &Histogram, Edge { start, slope }: Edge) -> [(f64, f64, f64); 5] {
     let object = above(histogram, start);
-    // The bulk of the object lies below `bulk`; its densest part is worth a colour of its own. A twenty-fifth of the scale
-    // at least for each, ten steps of 8-bit data, lest surfaces end as abruptly as voxels do.
+    // The bulk of the object lies below `bulk`; its densest part gets a colour of its own. Each takes a twenty-fifth
+    // of the scale at least, ten steps of 8-bit data, so that surfaces do not end as abruptly as voxels.
     let bulk = object.percentile(0.6).max(start + 0.04);
     let dense = object.percentile(0.97).max(bulk + 0.04);
-    // The first step rises within a voxel of the boundary, as steep or gentle as that is in these data: surfaces are crisp,
-    // so that shadows fall on something, and not so abrupt that voxels show. What begins there hides half of what is behind
-    // it within two units. It ends well before the bulk, and begins no more abruptly than noise would show.
+    // The first ramp rises within a voxel of the boundary, as steep as the data are there: surfaces are crisp enough
+    // to receive shadows, and not so abrupt that voxels show. Material there hides half of the background within two
+    // units. The ramp ends well before the bulk, and begins no more abruptly than noise would show.
     let (least, most) = FIRST_STEP;
     let rise = slope.clamp(least * (bulk - start), most * (bulk - start));
     [
@@ -93,7 +93,7 @@ fn rising(histogram: &Histogram, Edge { start, slope }: Edge) -> [(f64, f64, f64
     ]
 }
 
-/// A transfer function through stops in any order; colours mix as they are seen.
+/// Builds a transfer function through stops in any order; colours are mixed in Oklab.
 fn through(stops: impl IntoIterator<Item = Stop>, palette: &Palette) -> TransferFunction {
     let points =
         stops.into_iter().map(|stop| ControlPoint::new(stop.value, palette.at(stop.place), stop.opacity));
@@ -107,9 +107,10 @@ fn of_points(points: Vec<ControlPoint>) -> TransferFunction {
     function
 }
 
-/// Values of a volume in order, where there is something: of all voxels, or of one in so many.
+/// Returns a sorted sample of a volume's values, without missing voxels: all voxels, or every n-th one of a large
+/// volume.
 fn some_values(volume: &Volume, keep: impl FnMut(f64) -> Option<f64>) -> Vec<f64> {
-    // Quantiles of two million are good to a thousandth.
+    // Quantiles of two million values are accurate to a thousandth.
     let step = volume.voxel_count().div_ceil(1 << 21).max(1);
     let samples = volume.samples();
     let is_there = |voxel: &usize| volume.missing().is_none_or(|missing| !missing.contains(*voxel));
@@ -119,7 +120,7 @@ fn some_values(volume: &Volume, keep: impl FnMut(f64) -> Option<f64>) -> Vec<f64
     values
 }
 
-/// The value below which a share of ordered values lies; 0 where there are none.
+/// Returns the quantile of sorted values; 0 if there are none.
 fn quantile(values: &[f64], share: f64) -> f64 {
     let at = (share * values.len() as f64) as usize;
     values.get(at.min(values.len().saturating_sub(1))).copied().unwrap_or(0.0)

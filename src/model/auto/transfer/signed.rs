@@ -1,4 +1,5 @@
-//! Deviations to both sides of zero: both are shown where they are strong, and zero is not.
+//! Transfer functions for signed fields, deviations from zero: strong values of both signs are shown, and zero is
+//! not.
 
 use super::super::domain::{Domain, roughness};
 use super::super::palette::Palette;
@@ -7,39 +8,40 @@ use super::{Found, Stop, of_points, quantile, some_values, through};
 use crate::data::Volume;
 use crate::model::ControlPoint;
 
-/// Share of all energy (squares) that strong values have: what is shown is as much of the field as what is not.
+/// Share of the total energy (sum of squares) in the values that are shown: as much of the field is shown as hidden.
 const ENERGY: f64 = 0.5;
 
-/// Strong values are beyond so many deviations of noise, of which the median of the magnitudes is a measure that
-/// strong values hardly change: 1.4826 medians are a deviation of normal noise (1 / Φ⁻¹(3/4)), of which 1.2 % are beyond
-/// 2.5 deviations.
+/// Threshold of strong values in standard deviations of noise. The deviation is estimated from the median of the
+/// magnitudes, which strong values hardly change: for normal noise it is 1.4826 medians (1 / Φ⁻¹(3/4)), and 1.2 % of
+/// the values are beyond 2.5 deviations.
 const DEVIATIONS: f64 = 2.5;
 const DEVIATION_PER_MEDIAN: f64 = 1.4826;
 
-/// Roughness up to which a field has no noise: layers of rock have 0.05, statistical maps 0.44 and more; well apart
+/// Largest roughness of a field without noise: layers of rock have 0.05, statistical maps 0.44 and more; well apart
 /// from both.
 const SMOOTH: f64 = 0.2;
 
-/// Share of the values that is shown at least, however strong noise is: three times what is left of normal noise.
+/// Smallest share of values to show, however strong noise is: three times the share of normal noise beyond the
+/// threshold.
 const LEAST_STRONG: f64 = 0.04;
 
-/// How far the bulk of what is strong is above where that begins at least, and its peaks above the bulk: as steep as
-/// opacities are at most, lest surfaces end as abruptly as voxels do.
+/// Smallest ratio of the bulk of strong values to their threshold, and of their peaks to the bulk: limits the
+/// steepness of opacity, so that surfaces do not end as abruptly as voxels.
 const STEEPEST: f64 = 1.15;
 
-/// Light that is left behind the part in which a field is known, as thick as a cube of its voxels: what is strong on its
-/// far side is still seen, and so is where it ends.
+/// Transmittance of the known part of a field, as thick as a cube of its voxels: strong values on its far side are
+/// visible through it, and so is its outline.
 const LEFT_BEHIND: f64 = 0.55;
 
-/// Grey glass, as light as the palest colours of the field.
+/// Grey of the glass, as light as the palest colours of the field.
 const GLASS: [f32; 3] = [0.8; 3];
 
-/// The part in which the field is known, as a veil: everything but exactly zero, up to where it is strong.
+/// Returns the known part of a masked field as a veil: all values from just above zero to the threshold.
 fn glass(volume: &Volume, threshold: f64) -> Option<[ControlPoint; 6]> {
     let thickness = (known_part(volume)? as f64).cbrt();
     let opacity = 1.0 - LEFT_BEHIND.powf(1.0 / thickness.max(1.0));
     let point = |share: f64, opacity: f64| ControlPoint::new(share * threshold, GLASS, opacity);
-    // As close to zero and to what is strong as tables can tell.
+    // As close to zero and to the threshold as tables can resolve.
     Some([
         point(-0.98, opacity),
         point(-0.04, opacity),
@@ -50,21 +52,21 @@ fn glass(volume: &Volume, threshold: f64) -> Option<[ControlPoint; 6]> {
     ])
 }
 
-/// Shows both sides; nothing where all values are zero. Fields that are known in a part of their box only show that as
-/// glass: what is strong lies somewhere.
+/// Builds a function that shows both signs; `None` if all values are zero. The known part of a masked field is shown
+/// as glass, to locate the strong values.
 pub(super) fn find(volume: &Volume) -> Option<Found> {
-    // The energy of one outlier can be more than that of all others.
+    // One outlier can have more energy than all other values.
     let matters = volume.ranges().robust;
     let magnitudes =
         some_values(volume, |value| (value != 0.0 && matters.contains(value)).then_some(value.abs()));
-    // Fields without noise have none to hide.
+    // In a field without noise, all values are signal.
     let has_noise = roughness(volume) > SMOOTH;
     let threshold = threshold(&magnitudes, has_noise);
     if threshold <= 0.0 {
         return None;
     }
     let strong = &magnitudes[magnitudes.partition_point(|&value| value < threshold)..];
-    // As of other objects: the bulk of what is strong, and its peaks.
+    // As for other objects: the bulk of strong values, and their peaks.
     let bulk = quantile(strong, 0.6).max(threshold * STEEPEST);
     let peak = quantile(strong, 0.97).max(bulk * STEEPEST);
     let mut points = Vec::new();
@@ -84,10 +86,10 @@ pub(super) fn find(volume: &Volume) -> Option<Found> {
     Some(Found { has_veil: glass.is_some(), ..Found::of_values(of_points(points), Domain::Simulation) })
 }
 
-/// The magnitude from which values are strong, of magnitudes in order.
+/// Returns the magnitude above which values are strong, from sorted magnitudes.
 fn threshold(magnitudes: &[f64], has_noise: bool) -> f64 {
     let total: f64 = magnitudes.iter().map(|value| value * value).sum();
-    // From the strongest down until half of the energy is there.
+    // From the largest down, until half of the energy is reached.
     let mut sum = 0.0;
     let of_energy = magnitudes.iter().rev().find(|&value| {
         sum += value * value;

@@ -1,4 +1,4 @@
-//! What transfer functions show of made-up data of each kind.
+//! Tests of automatic transfer functions on synthetic data of each kind.
 
 use glam::DVec3;
 
@@ -10,7 +10,7 @@ use crate::model::{DensityRange, Easing, LabelTable, MAX_POINTS, Settings, Trans
 
 const N: usize = 32;
 
-/// Values by the place relative to the middle, in units of half the edge.
+/// Creates a volume from a function of the position relative to the centre, in units of half the edge.
 fn volume(value: impl Fn(DVec3) -> f64) -> Volume {
     let middle = (N - 1) as f64 / 2.0;
     let place =
@@ -42,14 +42,14 @@ fn signed_fields_show_both_sides_and_not_zero() {
     }
     for value in [2.5, -2.5, 3.0, -3.0] {
         assert!(function.opacity_at(value) > 0.5, "{value}");
-        // Red is above, blue below.
+        // Red above zero, blue below.
         let [red, _, blue] = function.at(value).0;
         assert_eq!(red > blue, value > 0.0, "{value}");
     }
     for value in [0.5, 1.0, 2.0, 2.9] {
         assert!((function.opacity_at(value) - function.opacity_at(-value)).abs() < 1e-9, "{value}");
     }
-    // Scaled, it is scaled.
+    // Scaled data give a scaled function.
     let larger = volume(|p| 3000.0 * (bump(p, DVec3::X * 0.4) - bump(p, DVec3::X * -0.4)));
     for (a, b) in function.points.iter().zip(shown(&larger, KindName::Signed).points) {
         assert!((a.value * 1000.0 / b.value - 1.0).abs() < 1e-3, "{} {}", a.value, b.value);
@@ -71,7 +71,7 @@ fn one_outlier_does_not_decide_what_is_strong() {
 
 #[test]
 fn noise_around_zero_is_not_shown() {
-    // Even noise of deviation 0.58 with a strong spot: nothing of the noise is strong.
+    // Uniform noise of deviation 0.58 with a strong spot: none of the noise is strong.
     let noise = |p: DVec3| ((p.dot(DVec3::new(127.1, 311.7, 74.7))).sin() * 43758.5453).fract();
     let spot = volume(|p| noise(p) + 8.0 * bump(p, DVec3::ZERO) - 8.0 * bump(p, DVec3::X * 0.7));
     let function = shown(&spot, KindName::Signed);
@@ -102,7 +102,7 @@ fn hounsfield_units_show_bone_and_not_flesh() {
             assert!(function.opacity_at(water + bone) > 0.5, "{bone}");
         }
     }
-    // Without any bone, what there is is shown.
+    // Without bone, other tissue is shown.
     let soft = volume(|p| if p.length() > 0.7 { -1000.0 } else { 40.0 });
     assert!(shown(&soft, KindName::HounsfieldCt).opacity_at(40.0) > 0.3);
 }
@@ -124,12 +124,12 @@ fn masks_have_their_surface_halfway() {
         assert_eq!(function.opacity_at(low + 0.35 * span), 0.0);
         assert!(function.opacity_at(low + 0.65 * span) > 0.8 && function.opacity_at(high) > 0.8);
     }
-    // Something else may be treated as one, and an outlier makes its surface no wider.
+    // Other data can be treated as a mask, and an outlier does not widen its surface.
     let ball = |p: DVec3| 100.0 * (-4.0 * p.length_squared()).exp();
     let odd = volume(|p| if p.min_element() > 0.99 { 1e30 } else { ball(p) });
     let (before, found) = (shown(&volume(ball), KindName::Mask), shown(&odd, KindName::Mask));
     for (a, b) in before.points.iter().zip(&found.points) {
-        // But for the few brightest voxels, which are outliers beside it.
+        // A tolerance for the few brightest voxels, which are outliers beside it.
         assert!((a.value - b.value).abs() < 5.0, "{} {}", a.value, b.value);
     }
 }
@@ -152,7 +152,7 @@ fn every_label_is_shown_alike_in_a_color_of_its_own() {
     assert!((red - crate::model::linear_from_srgb(f64::from(0.1f32))).abs() < 1e-9, "the file's own colour");
     let settings = Settings { transfer: function, ..Settings::default() };
     assert_eq!(labels_lost(&settings, &labels), 0);
-    // The first look has a table, which says the same.
+    // The first look has a table with the same colours.
     let wishes = Wishes { treated_as: Some(KindName::LabelMap), ..Wishes::default() };
     let first = first_settings_with(&labels, &Histogram::of(&labels), wishes);
     assert_eq!((first.labels.len(), labels_lost(&first, &labels)), (11, 0));
@@ -168,7 +168,7 @@ fn every_label_is_shown_alike_in_a_color_of_its_own() {
     assert!(labels_lost(&ramp, &labels) > 0, "what it is for");
 }
 
-/// Regions with the numbers 0, `first`, `first` + 1 … `first` + `count` − 1.
+/// Creates regions with the numbers 0, `first`, `first` + 1 … `first` + `count` − 1.
 fn regions(first: usize, count: usize) -> Volume {
     let values = (0..N * N * N).map(|at| {
         let region = at / (N * N * N / (count + 1) + 1);
@@ -181,7 +181,7 @@ fn regions(first: usize, count: usize) -> Volume {
 fn labels_are_told_apart_in_the_table_where_it_has_an_entry_for_each() {
     let look = |volume: &Volume| {
         let wishes = Wishes { treated_as: Some(KindName::LabelMap), ..Wishes::default() };
-        // As where the table is taken away.
+        // As if the label table were removed.
         let labels = LabelTable::default();
         Settings { labels, ..first_settings_with(volume, &Histogram::of(volume), wishes) }
     };
@@ -189,19 +189,19 @@ fn labels_are_told_apart_in_the_table_where_it_has_an_entry_for_each() {
         let volume = regions(first, count);
         let settings = look(&volume);
         assert_eq!(labels_lost(&settings, &volume), 0, "{count} from {first}");
-        // That it is the range which does it: over all values there are not enough entries.
+        // Over all values there are not enough entries, so it is the range that matters.
         let all = Settings { range: DensityRange::Full, ..settings };
         let is_enough = first + count <= 512;
         assert_eq!(labels_lost(&all, &volume) == 0, is_enough, "{count} from {first}");
     }
-    // Where there are too few entries, the lowest is seen all the same.
+    // With too few entries, the lowest label is still visible.
     let many = regions(5000, 3000);
     let settings = look(&many);
     let range = settings.shown_range(&many.ranges());
     let table = settings.transfer.bake(range, 1.0, 1.0);
     assert!(table.sample(many.showing(range).density_of(5000.0))[3] > 0.5);
     assert_eq!(table.sample(many.showing(range).density_of(0.0))[3], 0.0);
-    // No range has an entry for each of these.
+    // No range has an entry for each number of these.
     for volume in [
         regions(1, 3000),
         volume(|p| {

@@ -1,11 +1,11 @@
-//! A veil around what lies within.
+//! Veils: transfer functions that make an outer material translucent around an inner one.
 
 use super::super::domain::Domain;
 use super::super::palette::Palette;
 use crate::model::{ControlPoint, Interpolation, TransferFunction};
 
-/// A function that shows what is above a value alone: in the colours of the field that all channels of the file share, or
-/// else in ivory.
+/// Returns a function that shows only values above `start`: in the colours of the domain that all channels of the
+/// file share, or else in ivory.
 pub(in crate::model::auto) fn inner(
     function: &TransferFunction,
     start: f64,
@@ -23,8 +23,8 @@ pub(in crate::model::auto) fn inner(
     TransferFunction { points, interpolation: Interpolation::Opacity, ..function.clone() }
 }
 
-/// A function that shows what is above a value as [`inner`] does, and of what is below only where that begins: a skin, of
-/// which so much of the opacity is left, as clear as glass within.
+/// Returns a function that shows values above `start` as [`inner`] does, and of those below only the outer surface: a
+/// skin with a share of its opacity, fully transparent inside.
 pub(in crate::model::auto) fn veiled(
     function: &TransferFunction,
     start: f64,
@@ -34,7 +34,7 @@ pub(in crate::model::auto) fn veiled(
     let begins = function.points.windows(2).find(|pair| pair[0].opacity <= 0.0 && pair[1].opacity > 0.0);
     let skin = begins.filter(|pair| pair[1].value < start).map(|pair| {
         let [outside, surface] = [pair[0], pair[1]];
-        // As wide within as without, as far as there is room.
+        // Symmetric about the surface, if it fits.
         let ends = (2.0 * surface.value - outside.value).min(f64::midpoint(surface.value, start));
         let at = |value: f64, opacity: f64| ControlPoint { value, opacity, ..function.point_at(value) };
         [outside, at(surface.value, share * surface.opacity), at(ends, 0.0)]
@@ -43,14 +43,14 @@ pub(in crate::model::auto) fn veiled(
     TransferFunction { points, ..function.clone() }
 }
 
-/// A function of which a veil is as opaque as the rest.
+/// Returns a function with every visible point opaque, so that a veil counts as visible.
 pub(in crate::model::auto) fn unveiled(function: &TransferFunction) -> TransferFunction {
     let mut opaque = function.clone();
     opaque.points.iter_mut().filter(|point| point.opacity > 0.0).for_each(|point| point.opacity = 1.0);
     opaque
 }
 
-/// Makes a function so much less opaque everywhere.
+/// Multiplies the opacity of all points by a factor.
 pub(in crate::model::auto) fn scale_opacity(function: &mut TransferFunction, share: f64) {
     for point in &mut function.points {
         point.opacity *= share;

@@ -1,77 +1,78 @@
-//! The camera: where the eye is, in scene space.
+//! Orbit camera in scene space: projection, framing, orbiting, panning, zooming and picking rays.
 
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::scene_axis::SceneAxis;
 
-/// How the picture is projected.
+/// Camera projection: perspective or orthographic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Projection {
-    /// Rays meet in the eye.
+    /// Perspective projection: rays meet at the camera position.
     Perspective,
-    /// Rays are parallel; the picture shows what the perspective one shows at the target.
+    /// Orthographic projection: rays are parallel, and the scale is that of the perspective projection at the target.
     Orthographic,
 }
 
-/// Width over height of the frame of [`Fit::Frame`]: between those of screens and of pages.
+/// Aspect ratio of the frame of [`Fit::Frame`]: between those of screens and of pages.
 pub const FRAME_ASPECT: f64 = 4.0 / 3.0;
 
-/// What of a picture the angle of view belongs to: what is seen where pictures of several shapes are made.
+/// Reference of the field of view: decides what is visible in images of different aspect ratios.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Fit {
-    /// The height. Narrow pictures show less at the sides.
+    /// Height of the image. Narrow images show less at the sides.
     #[default]
     Height,
-    /// The height of the largest frame of 4:3 in the middle of the picture, all of which is seen in a picture of any
-    /// shape: narrow ones show more above and below.
+    /// Height of the largest 4:3 frame in the middle of the image, which is entirely visible at any aspect ratio:
+    /// narrow images show more above and below.
     Frame,
 }
 
-/// A camera that orbits a target, upright in a scene of which one axis points up.
+/// Camera that orbits a target, upright in a scene in which one axis points up.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Camera {
-    /// Perspective or orthographic.
+    /// Projection: perspective or orthographic.
     pub projection: Projection,
-    /// The axis of the scene that points up. Azimuth and elevation refer to the scene as it stands then
-    /// ([`SceneAxis::scene_from_upright`]), the floor lies below along it, and the data stay where they are. Cameras
-    /// that were saved before there was a choice have z up.
+    /// Scene axis that points up. Azimuth and elevation refer to the scene rotated accordingly
+    /// ([`SceneAxis::scene_from_upright`]), and the floor lies below along this axis; the data are not moved. Cameras
+    /// saved before the setting existed have z up.
     #[serde(default)]
     pub up: SceneAxis,
-    /// Direction from the target to the eye about the vertical; with z up, counted from +x towards +y.
+    /// Azimuth in degrees of the direction from the target to the camera; with z up, counted from +x towards +y.
     pub azimuth_deg: f64,
-    /// Direction from the target to the eye above the horizontal plane; may pass 90.
+    /// Elevation in degrees of the direction from the target to the camera, above the horizontal plane; above 90 it
+    /// passes over the top.
     pub elevation_deg: f64,
-    /// Turn of the camera about its own axis.
+    /// Roll in degrees about the viewing axis.
     pub roll_deg: f64,
-    /// The point in the middle of the picture, in scene units.
+    /// Point in the middle of the image, in scene units.
     pub target: [f64; 3],
-    /// From the target to the eye, in scene units.
+    /// Distance from the target to the camera, in scene units.
     pub distance: f64,
-    /// Full vertical angle of view of the picture, or of the frame in it: as `fit` says.
+    /// Full vertical field of view in degrees, of the image or of its frame, as selected by `fit`.
     pub fov_y_deg: f64,
-    /// What the angle of view belongs to. Cameras that were saved before there was a choice have it of the height.
+    /// Reference of the field of view. Cameras saved before the setting existed refer to the height.
     #[serde(default)]
     pub fit: Fit,
 }
 
 impl Camera {
-    /// Columns: right, up and backward (from the target to the eye), in scene space.
+    /// Returns the camera's right, up and backward axes (from the target to the camera) as columns, in scene space.
     ///
-    /// Built from rotations alone, so that it has no pole: passing over the top keeps turning.
+    /// Built from rotations alone, so that it has no pole: orbiting over the top continues.
     pub fn scene_from_view(&self) -> DMat3 {
         let azimuth = DMat3::from_rotation_z(self.azimuth_deg.to_radians());
         let elevation = DMat3::from_rotation_y(-self.elevation_deg.to_radians());
-        // At azimuth 0 and elevation 0 the eye is on +x and looks along −x with z up: right is +y.
+        // At azimuth 0 and elevation 0 the camera is on +x and looks along −x with z up: right is +y.
         let looking_along_minus_x = DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X);
         let roll = DMat3::from_rotation_z(self.roll_deg.to_radians());
         self.up.scene_from_upright() * azimuth * elevation * looking_along_minus_x * roll
     }
 
-    /// The camera some share of the way to another, by the shorter way round; none if the two project differently or
-    /// stand otherwise.
+    /// Interpolates towards another camera, taking the shorter way around; `None` if projection, up axis or fit
+    /// differ.
     pub fn towards(&self, other: &Self, share: f64) -> Option<Self> {
         let is_alike = (self.projection, self.up, self.fit) == (other.projection, other.up, other.fit);
         let mix = |from: f64, to: f64| from + (to - from) * share;
@@ -81,35 +82,35 @@ impl Camera {
             elevation_deg: turned(self.elevation_deg, other.elevation_deg),
             roll_deg: turned(self.roll_deg, other.roll_deg),
             target: std::array::from_fn(|axis| mix(self.target[axis], other.target[axis])),
-            // Evenly as it is seen: so many times as near.
+            // Geometric interpolation, so that the apparent size changes at an even rate.
             distance: self.distance * (other.distance / self.distance).powf(share),
             fov_y_deg: mix(self.fov_y_deg, other.fov_y_deg),
             ..self.clone()
         })
     }
 
-    /// The eye in scene space.
+    /// Returns the camera position in scene space.
     pub fn eye(&self) -> DVec3 {
         DVec3::from(self.target) + self.scene_from_view().z_axis * self.distance
     }
 
-    /// Half the height, at the target, of a picture with that width over height; in scene units.
+    /// Returns half the height at the target, in scene units, of an image with the given aspect ratio.
     pub fn half_height_at_target(&self, aspect: f64) -> f64 {
         let heights_per_frame = match self.fit {
-            // As wide as the picture, the frame is lower than that.
+            // The frame is as wide as the image, and lower.
             Fit::Frame if aspect > 0.0 && aspect < FRAME_ASPECT => FRAME_ASPECT / aspect,
             Fit::Frame | Fit::Height => 1.0,
         };
         self.distance * (self.fov_y_deg.to_radians() / 2.0).tan() * heights_per_frame
     }
 
-    /// Edge of a pixel at the target, in scene units.
+    /// Returns the edge of a pixel at the target, in scene units.
     pub fn pixel_at_target(&self, width: f64, height: f64) -> f64 {
         2.0 * self.half_height_at_target(width / height) / height
     }
 
-    /// Where a scene point is seen: pixels from the top left, and its depth along the view axis
-    /// (positive in front of the eye). `None` behind the eye of a perspective camera.
+    /// Projects a scene point: returns its pixel position from the top left, and its depth along the viewing axis
+    /// (positive in front of the camera). `None` behind a perspective camera.
     pub fn pixel_from_scene(&self, point: DVec3, width: f64, height: f64) -> Option<(f64, f64, f64)> {
         let offset = self.scene_from_view().transpose() * (point - self.eye());
         let depth = -offset.z;
@@ -124,7 +125,7 @@ impl Camera {
         Some((x, y, depth))
     }
 
-    /// The ray through a pixel (from the top left): origin and unit direction, in scene space.
+    /// Returns the ray through a pixel (from the top left): origin and unit direction, in scene space.
     pub fn ray_through(&self, x: f64, y: f64, width: f64, height: f64) -> (DVec3, DVec3) {
         let view = self.scene_from_view();
         let unit = self.pixel_at_target(width, height);
@@ -137,13 +138,13 @@ impl Camera {
         }
     }
 
-    /// Turns the camera about its target by a drag in degrees; the scene follows the pointer.
+    /// Orbits the target by a drag in degrees; the scene follows the pointer.
     pub fn orbit(&mut self, right_deg: f64, down_deg: f64) {
         self.azimuth_deg = (self.azimuth_deg - right_deg).rem_euclid(360.0);
         self.elevation_deg = (self.elevation_deg + down_deg + 180.0).rem_euclid(360.0) - 180.0;
     }
 
-    /// Moves the target so that the scene follows a drag of `dx`, `dy` pixels (y down) in a picture of that size.
+    /// Moves the target so that the scene follows a drag of `dx`, `dy` pixels (y down) in an image of the given size.
     pub fn pan(&mut self, dx: f64, dy: f64, width: f64, height: f64) {
         let view = self.scene_from_view();
         let unit = self.pixel_at_target(width, height);
@@ -151,7 +152,7 @@ impl Camera {
         self.target = target.into();
     }
 
-    /// Brings the eye nearer (`factor` below 1) or further, within sensible bounds.
+    /// Moves the camera nearer (`factor` below 1) or farther, within sensible limits.
     pub fn zoom(&mut self, factor: f64) {
         // From 1/50 of the volume to far enough that it is a dot.
         self.distance = (self.distance * factor).clamp(0.05, 100.0);
@@ -159,7 +160,7 @@ impl Camera {
 }
 
 impl Default for Camera {
-    /// Three-quarter view from above.
+    /// Returns a three-quarter view from above.
     fn default() -> Self {
         Self {
             projection: Projection::Perspective,
@@ -189,7 +190,7 @@ mod tests {
         assert_eq!(from.towards(&to, 0.0), Some(from.clone()));
         let end = from.towards(&to, 1.0).unwrap();
         assert!((end.scene_from_view().z_axis - to.scene_from_view().z_axis).length() < 1e-9);
-        // Between lines of sight that meet and such that do not there is nothing.
+        // Cameras with different projections cannot be interpolated.
         assert_eq!(from.towards(&Camera { projection: Projection::Orthographic, ..to }, 0.5), None);
     }
 
@@ -203,7 +204,7 @@ mod tests {
         assert!((camera.eye() - DVec3::new(0.0, -5.2, 0.0)).length() < 1e-12);
     }
 
-    /// Every projection with every fit.
+    /// Returns cameras with every combination of projection and fit.
     fn cameras() -> impl Iterator<Item = Camera> {
         [Projection::Perspective, Projection::Orthographic].into_iter().flat_map(|projection| {
             [Fit::Height, Fit::Frame].map(|fit| Camera {
@@ -232,7 +233,7 @@ mod tests {
     #[test]
     fn the_scene_follows_a_pan() {
         for mut camera in cameras() {
-            // In the plane through the target, which is what a pan moves.
+            // Point in the plane through the target, in which a pan moves.
             let point = DVec3::from(camera.target);
             for (width, height) in [(800.0, 600.0), (200.0, 600.0)] {
                 let (x0, y0, _) = camera.pixel_from_scene(point, width, height).unwrap();
@@ -266,7 +267,7 @@ mod tests {
             let found = frame.half_height_at_target(aspect) * aspect;
             assert!((found / half_width - 1.0).abs() < 1e-12, "{aspect}: {found}, not {half_width}");
         }
-        // Of no picture at all nothing is seen, but numbers stay finite.
+        // An invalid aspect ratio shows nothing, but numbers stay finite.
         for aspect in [0.0, -1.0, f64::NAN] {
             assert!(frame.half_height_at_target(aspect).is_finite());
         }

@@ -1,4 +1,4 @@
-//! Where the eye is, and which way up things stand.
+//! Camera settings: the camera, scene axes and standard views.
 
 pub(in crate::model) mod camera;
 pub(in crate::model) mod scene_axis;

@@ -1,33 +1,33 @@
-//! Axes of the scene with a sign: which of them points up.
+//! Signed axes of the scene, and the rotation that makes one of them point up.
 
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
-/// A direction along an axis of the scene.
+/// Signed direction along an axis of the scene.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SceneAxis {
-    /// +x.
+    /// Direction along the +x axis.
     PlusX,
-    /// −x.
+    /// Direction along the −x axis.
     MinusX,
-    /// +y.
+    /// Direction along the +y axis.
     PlusY,
-    /// −y.
+    /// Direction along the −y axis.
     MinusY,
-    /// +z.
+    /// Direction along the +z axis.
     #[default]
     PlusZ,
-    /// −z.
+    /// Direction along the −z axis.
     MinusZ,
 }
 
 impl SceneAxis {
-    /// All of them.
+    /// All six signed axes, x first.
     pub const ALL: [Self; 6] =
         [Self::PlusX, Self::MinusX, Self::PlusY, Self::MinusY, Self::PlusZ, Self::MinusZ];
 
-    /// As a unit vector.
+    /// Returns the axis as a unit vector.
     pub fn direction(self) -> DVec3 {
         match self {
             Self::PlusX => DVec3::X,
@@ -39,19 +39,20 @@ impl SceneAxis {
         }
     }
 
-    /// The one that is nearest to a direction.
+    /// Returns the axis nearest to a direction.
     pub fn nearest(direction: DVec3) -> Self {
         let along = |axis: &Self| axis.direction().dot(direction);
         Self::ALL.into_iter().max_by(|a, b| along(a).total_cmp(&along(b))).unwrap_or_default()
     }
 
-    /// The scene as it stands when this axis points up, in terms of which z is up. A rotation, never a reflection.
+    /// Returns the rotation from upright space, in which z is up, to the scene in which this axis points up. Never a
+    /// reflection.
     pub fn scene_from_upright(self) -> DMat3 {
         let upside_down = DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0));
         match self {
             Self::PlusZ => DMat3::IDENTITY,
             Self::MinusZ => upside_down,
-            // Each axis takes the place of the next.
+            // Cyclic permutation: each axis takes the place of the next.
             Self::PlusX => DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X),
             Self::MinusX => Self::PlusX.scene_from_upright() * upside_down,
             Self::PlusY => DMat3::from_cols(DVec3::Z, DVec3::X, DVec3::Y),

@@ -1,37 +1,38 @@
-//! Ways to look that everybody expects: from the six sides, from a corner, all of it, nearer to the pointer.
+//! Standard views and camera navigation: views along the axes and from a corner, zooming at the pointer, changing the
+//! target.
 
 use glam::{DVec2, DVec3};
 
 use crate::model::{Camera, Projection, SceneAxis};
 
-/// A side from which to look at the scene as it stands.
+/// Standard view of the scene from one side or from a corner.
 ///
-/// Its axes are those of the scene where z is up, and turn with what is up ([`SceneAxis::scene_from_upright`]). What the
-/// front of a thing is, only its owner knows.
+/// Its axes refer to upright space, where z is up, and turn with the up axis ([`SceneAxis::scene_from_upright`]). The
+/// front of an object is not known in general.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StandardView {
-    /// From +x.
+    /// View from the +x side.
     PlusX,
-    /// From −x.
+    /// View from the −x side.
     MinusX,
-    /// From +y.
+    /// View from the +y side.
     PlusY,
-    /// From −y.
+    /// View from the −y side.
     MinusY,
-    /// From +z: from above.
+    /// View from +z: from above.
     PlusZ,
-    /// From −z: from below.
+    /// View from −z: from below.
     MinusZ,
-    /// From a corner: all three axes are equally long.
+    /// Isometric view from a corner: all three axes appear equally long.
     Isometric,
 }
 
 impl StandardView {
-    /// All of them, in the order of menus.
+    /// All standard views, in the order of menus.
     pub const ALL: [Self; 7] =
         [Self::PlusX, Self::MinusX, Self::PlusY, Self::MinusY, Self::PlusZ, Self::MinusZ, Self::Isometric];
 
-    /// What menus call it while an axis of the scene points up.
+    /// Returns the view's name in menus, for a given up axis.
     pub fn name(self, up: SceneAxis) -> &'static str {
         let Some(side) = self.side() else { return "Isometric" };
         let [from, above, below] = match SceneAxis::nearest(up.scene_from_upright() * side.direction()) {
@@ -49,7 +50,7 @@ impl StandardView {
         }
     }
 
-    /// The side; none for a corner.
+    /// Returns the viewing side in upright space; `None` for the corner.
     fn side(self) -> Option<SceneAxis> {
         match self {
             Self::PlusX => Some(SceneAxis::PlusX),
@@ -62,7 +63,7 @@ impl StandardView {
         }
     }
 
-    /// Azimuth and elevation in degrees.
+    /// Returns azimuth and elevation in degrees.
     pub(crate) fn angles_deg(self) -> [f64; 2] {
         match self {
             Self::PlusX => [0.0, 0.0],
@@ -77,7 +78,7 @@ impl StandardView {
         }
     }
 
-    /// The side that faces into a direction of the scene while one of its axes points up.
+    /// Returns the standard view whose side is nearest to a direction of the scene, for a given up axis.
     pub fn facing(direction: DVec3, up: SceneAxis) -> Self {
         match SceneAxis::nearest(up.scene_from_upright().transpose() * direction) {
             SceneAxis::PlusX => Self::PlusX,
@@ -91,19 +92,20 @@ impl StandardView {
 }
 
 impl Camera {
-    /// Looks at the same target from a side, from as far as before.
+    /// Moves the camera to a standard view, at the same distance from the same target.
     pub fn look_from(&mut self, view: StandardView) {
         [self.azimuth_deg, self.elevation_deg] = view.angles_deg();
         self.roll_deg = 0.0;
     }
 
-    /// As [`Self::look_from`] at a body, whose front is known: a corner is one of those between its front and its head.
+    /// Moves the camera as [`Self::look_from`], for a body, whose front is known: the corner is one between its front
+    /// and its head.
     pub fn look_at_body(&mut self, view: StandardView) {
         self.look_from(view);
         if view != StandardView::Isometric {
             return;
         }
-        // Of the scene of a body, +y is its front and +z its head.
+        // In the scene of a body, +y is its front and +z its head.
         let shows = |camera: &Self| {
             let eye = camera.scene_from_view().z_axis;
             eye.y + eye.z
@@ -111,14 +113,14 @@ impl Camera {
         let [first, _] = view.angles_deg();
         for quarter in 1..4 {
             let other = Self { azimuth_deg: (first + 90.0 * f64::from(quarter)) % 360.0, ..self.clone() };
-            // Two corners show as much; rounding does not choose between them.
+            // Two corners show equally much; rounding must not choose between them.
             if shows(&other) > shows(self) + 1e-9 {
                 *self = other;
             }
         }
     }
 
-    /// Perspective or orthographic, whichever it is not.
+    /// Switches between perspective and orthographic projection.
     pub fn toggle_projection(&mut self) {
         self.projection = match self.projection {
             Projection::Perspective => Projection::Orthographic,
@@ -126,17 +128,17 @@ impl Camera {
         };
     }
 
-    /// Frames what another camera frames, from the direction of this one.
+    /// Frames the same region as another camera, from the direction of this one.
     pub fn frame_as(&mut self, other: &Self) {
         self.target = other.target;
         self.fit = other.fit;
-        // As wide at the target as the other, whatever the angle of view.
+        // The same width at the target, regardless of the field of view.
         let ratio = (other.fov_y_deg.to_radians() / 2.0).tan() / (self.fov_y_deg.to_radians() / 2.0).tan();
         self.distance = other.distance * ratio;
     }
 
-    /// Brings the eye nearer (`factor` below 1) or further, so that what is seen at a pixel of the target's
-    /// plane stays there, in a picture of `size` pixels.
+    /// Zooms by `factor` (below 1: nearer) so that a point in the target's plane stays at its pixel, in an image of
+    /// `size` pixels.
     pub fn zoom_at(&mut self, factor: f64, pixel: DVec2, size: DVec2) {
         let before = self.distance;
         let unit = self.pixel_at_target(size.x, size.y.max(1.0));
@@ -148,8 +150,8 @@ impl Camera {
         self.target = (DVec3::from(self.target) + aside * share).into();
     }
 
-    /// Makes a point the one to turn about, without moving the eye's line of sight: the picture stays, unless
-    /// the point is aside; then it comes to the middle.
+    /// Makes a point the orbit centre without rotating the camera: the image stays the same, unless the point is
+    /// off-centre; then it moves to the middle.
     pub fn turn_about(&mut self, point: DVec3) {
         let view = self.scene_from_view();
         let depth = (self.eye() - point).dot(view.z_axis);
@@ -171,12 +173,12 @@ mod tests {
             let mut camera = Camera { up, ..Camera::default() };
             camera.look_at_body(StandardView::Isometric);
             let eye = camera.scene_from_view().z_axis;
-            // As much of a third axis, to the right or to the left of the body.
+            // The third axis is equally visible, on the right or on the left of the body.
             assert!(eye.abs().abs_diff_eq(DVec3::splat(3f64.sqrt().recip()), 1e-9), "{up:?}: {eye}");
             let is_lying_down = matches!(up, SceneAxis::MinusY | SceneAxis::MinusZ);
             assert!(is_lying_down || (eye.y > 0.0 && eye.z > 0.0), "{up:?}: {eye}");
         }
-        // Sides are what they are.
+        // Side views are unchanged.
         let (mut body, mut other) = (Camera::default(), Camera::default());
         body.look_at_body(StandardView::PlusX);
         other.look_from(StandardView::PlusX);
@@ -218,7 +220,7 @@ mod tests {
             {
                 let mut camera = Camera { projection, fit, target: [0.2, -0.1, 0.3], ..Camera::default() };
                 let view = camera.scene_from_view();
-                // In the plane through the target.
+                // Point in the plane through the target.
                 let point = DVec3::from(camera.target) + 0.4 * view.x_axis - 0.3 * view.y_axis;
                 let (x, y, _) = camera.pixel_from_scene(point, size.x, size.y).unwrap();
                 camera.zoom_at(0.6, DVec2::new(x, y), size);

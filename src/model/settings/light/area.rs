@@ -1,4 +1,5 @@
-//! How large a light is: the wider it looks from where its shadow falls, the softer the shadow's border.
+//! Area lights: shapes, sample points and extent. The larger the angle of a light as seen from its shadow, the softer
+//! the shadow's border.
 
 use std::f64::consts::{PI, TAU};
 
@@ -8,57 +9,56 @@ use serde::{Deserialize, Serialize};
 use super::{LightKind, SceneLight};
 use crate::model::{NearField, Resolution, Shadows};
 
-/// The widest light, in scene units: as wide as most rooms around a volume.
+/// Largest width of a light, in scene units: as wide as most rooms around a volume.
 pub const MAX_LIGHT_SIZE: f64 = 20.0;
 
-/// The widest light that is infinitely far away, in degrees: half of the sky in each direction from its middle.
+/// Largest angular width of a light at infinity, in degrees: 45° to each side of its centre.
 pub const MAX_LIGHT_ANGLE_DEG: f64 = 90.0;
 
-/// The most oblong rectangle, width by height.
+/// Largest aspect ratio of a rectangular light, width by height.
 pub const MAX_LIGHT_ASPECT: f64 = 10.0;
 
-/// How far the ways to points of a light come apart from that to its middle where a ray nearby stands for all of them, in
-/// edges of the smallest voxel: half a disc is nearer than 0.7 of its radius.
+/// Largest distance between a near-field ray to the light's centre and the rays to its sample points, in smallest
+/// voxel edges, up to which it represents them: half of a disc's area lies within 0.7 of its radius.
 const NEAR_SPREAD: f64 = 0.7;
 
-/// The golden ratio less one: multiples of it, less their whole parts, fill 0 … 1 evenly however many they are.
+/// Golden ratio minus one: the fractional parts of its multiples fill 0 … 1 evenly for any count.
 const GOLDEN_SHARE: f64 = 0.618_033_988_749_894_9;
 
-/// What shines of a light.
+/// Shape of a light's emitting surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LightShape {
-    /// A point: shadows are as sharp as the volume.
+    /// Point light: shadows are as sharp as the volume.
     Point,
-    /// A round plate that faces the middle of the volume.
+    /// Disc that faces the centre of the volume.
     Disc,
-    /// A rectangular one, as a window is.
+    /// Rectangle that faces the centre of the volume, such as a window.
     Rectangle,
-    /// A ball, which looks the same from everywhere.
+    /// Ball, which looks the same from all directions.
     Ball,
 }
 
-/// The extent of a light in the scene, around its place: in scene units, or for a parallel light in tangents of angles
-/// from its direction.
+/// Extent of an area light around its position in the scene: in scene units, or for a parallel light in tangents of
+/// angles from its direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LightArea {
-    /// Any but a point.
+    /// Shape of the light, never a point.
     pub shape: LightShape,
-    /// From its middle to its right border, as seen from the middle of the volume.
+    /// Vector from the centre to the right border, as seen from the centre of the volume.
     pub right: DVec3,
-    /// From its middle to its upper border.
+    /// Vector from the centre to the upper border.
     pub up: DVec3,
-    /// From its middle to its border towards the middle of the volume: zero for what is flat.
+    /// Vector from the centre to the border towards the centre of the volume: zero for flat shapes.
     pub near: DVec3,
 }
 
 impl LightShape {
-    /// Point number `index` of `count` on the shape: across, up and towards the volume, each −1 … 1, so that as many
-    /// lie in areas of the same size wherever that is looked at from.
+    /// Returns sample point `index` of `count` on the shape: across, up and towards the volume, each −1 … 1, with
+    /// even density in projection from any direction.
     ///
-    /// Of a disc rings as wide as each other; of a rectangle Fibonacci's lattice; of a ball the disc, each
-    /// point moved along its chord by the arcsine law: density 1/√(1 − r²), whose shadow along every direction is an even
-    /// disc.
+    /// Discs use rings of equal width; rectangles a Fibonacci lattice; balls the disc, with each point moved along
+    /// its chord by the arcsine law: density 1/√(1 − r²), whose projection along every direction is an even disc.
     pub fn point(self, index: u32, count: u32) -> DVec3 {
         let spread = (f64::from(index) * GOLDEN_SHARE + 0.5).fract();
         match self {
@@ -76,18 +76,18 @@ impl LightShape {
     }
 }
 
-/// Point number `index` of `count` on a disc of radius 1, in m = √n/2 rings of the same width, each with as many points as
-/// its area asks for and turned by half a step against the one within.
+/// Returns point `index` of `count` on a unit disc, in m = √n/2 rings of equal width, each with as many points as its
+/// area requires and rotated by half a step relative to the ring inside it.
 ///
-/// Half-planes that cover the disc in any direction cover as many points as they should within 1.4 % of 64 and 6.7 % of
-/// 16, where edges are as soft as a thirtieth of it; of Vogel's spiral it is 2.0 and 9.3 %.
+/// For half-planes that cover the disc in any direction, the number of covered points is correct within 1.4 % of 64
+/// and 6.7 % of 16 points, with edges as soft as a thirtieth of the disc; with Vogel's spiral, 2.0 and 9.3 %.
 fn on_rings(index: u32, count: u32) -> DVec2 {
     if count < 2 {
         return DVec2::ZERO;
     }
     let all = f64::from(count);
     let rings = (all.sqrt() / 2.0).round().max(1.0);
-    // Points up to the end of a ring.
+    // Number of points up to the end of a ring.
     let within = |ring: f64| (all * ring * ring / (rings * rings)).round();
     let mut ring = 1.0;
     while f64::from(index) >= within(ring) {
@@ -99,10 +99,10 @@ fn on_rings(index: u32, count: u32) -> DVec2 {
 }
 
 impl LightArea {
-    /// The extent of a light that stands in `direction` as seen from the middle of the volume; `None` of a point.
+    /// Creates the extent of a light in `direction` as seen from the centre of the volume; `None` for a point.
     ///
-    /// `half`: half its width and half its height. `upright`: where up is in the scene. `turn_deg`: how far the shape is
-    /// turned counterclockwise, as seen from the volume.
+    /// `half`: half its width and half its height. `upright`: the scene's up direction. `turn_deg`: counterclockwise
+    /// rotation of the shape, as seen from the volume.
     pub(super) fn new(
         (shape, half): (LightShape, DVec2),
         direction: DVec3,
@@ -112,7 +112,7 @@ impl LightArea {
         if shape == LightShape::Point || half.max_element() <= 0.0 {
             return None;
         }
-        // Right above or below, where nothing is to the right of another, any direction will do.
+        // Directly above or below, where right is undefined, any direction will do.
         let across = direction.cross(upright).try_normalize();
         let across = across.unwrap_or_else(|| direction.any_orthonormal_vector());
         let up = across.cross(direction);
@@ -126,32 +126,32 @@ impl LightArea {
         })
     }
 
-    /// A place on the shape, from its middle.
+    /// Returns the offset from the centre of a point in shape coordinates.
     pub fn offset(&self, DVec3 { x, y, z }: DVec3) -> DVec3 {
         self.right * x + self.up * y + self.near * z
     }
 }
 
 impl SceneLight {
-    /// The resolution of its light volume for a volume of so many voxels.
+    /// Returns the resolution of the light's volume for a data volume of `dims` voxels.
     pub fn resolution(&self, shadows: &Shadows, dims: [usize; 3]) -> Resolution {
         let Shadows { resolution, area, .. } = *shadows;
         if self.area.is_some() { resolution.max(shadows.soft(area.resolution, dims)) } else { resolution }
     }
 
-    /// Point lights that stand for this one: `count` of them, or the light itself if it is a point.
+    /// Returns `count` point lights that represent this one, or the light itself if it is a point.
     pub fn points(&self, count: u32) -> Vec<Self> {
         let Some(area) = &self.area else { return vec![*self] };
         (0..count).map(|index| self.moved(area.offset(area.shape.point(index, count)))).collect()
     }
 
-    /// How many steps a ray nearby takes towards this light. One ray stands for those to all points, so that it ends where
-    /// these have come 0.7 voxels apart from it: from there on their mean, the light volume, is nearer to the
-    /// truth.
+    /// Returns the number of near-field steps towards this light. One ray represents those to all sample points, so
+    /// it ends where these have diverged from it by 0.7 voxels: beyond that, the light volume, which is their mean,
+    /// is more accurate.
     pub fn near_steps(&self, near: NearField) -> u32 {
         let Some(area) = &self.area else { return near.steps() };
         let away = match self.kind {
-            // Its extent is that of one at a distance of 1.
+            // The extent of a parallel light is that of one at distance 1.
             LightKind::Parallel => 1.0,
             LightKind::Perspective => DVec3::from(self.position).length(),
         };
@@ -159,7 +159,7 @@ impl SceneLight {
         near.steps_within(NEAR_SPREAD * away / spread)
     }
 
-    /// The point light that far from the middle of this one.
+    /// Returns the point light at an offset from the centre of this light.
     fn moved(&self, offset: DVec3) -> Self {
         let middle = match self.kind {
             LightKind::Parallel => self.direction(),
@@ -198,12 +198,12 @@ mod tests {
             assert_eq!(steps(&far(0.0), near), near.steps(), "a point");
             assert_eq!(steps(&far(5.0), near), near.steps(), "16 voxels");
         }
-        // Three voxels, and 1.7, of which two steps have one.
+        // Limits of 3 and 1.7 voxels: four steps have a length of 3, two steps of 1.
         assert_eq!(steps(&far(25.0), NearField::Long), 4);
         assert_eq!(steps(&far(45.0), NearField::Short), 2);
         assert_eq!(steps(&far(90.0), NearField::Long), 2);
         assert_eq!(steps(&far(90.0), NearField::Off), 0);
-        // As wide from a distance of 4 as that of 25 degrees.
+        // The same angular size from a distance of 4 as one of 25 degrees.
         let lamp = Light { size: 8.0 * 12.5_f64.to_radians().tan(), ..light(LightShape::Ball) };
         assert_eq!(steps(&lamp, NearField::Long), 4);
     }
@@ -218,7 +218,7 @@ mod tests {
                 let from = point + DVec3::Y * 4.0;
                 match shape {
                     LightShape::Rectangle => {
-                        // Twice as wide as high, upright, facing the middle.
+                        // Twice as wide as high, upright, facing the centre.
                         assert!(from.x.abs() < 1.0 && from.z.abs() < 0.5 && from.y.abs() < 1e-12, "{from}");
                     }
                     LightShape::Disc => assert!(from.length() < 1.0 && from.y.abs() < 1e-12, "{from}"),
@@ -228,7 +228,8 @@ mod tests {
         }
     }
 
-    /// Half of the points and a quarter of the moment of inertia of what an even disc has, from every side.
+    /// Checks that the second and third moments of a ball's points are those of an even disc, along several
+    /// directions.
     #[test]
     fn a_ball_casts_an_even_disc_along_every_direction() {
         let at: Vec<_> = (0..64).map(|index| LightShape::Ball.point(index, 64)).collect();
@@ -254,7 +255,7 @@ mod tests {
             .fold(0.0, f64::max);
         // The outermost of four rings lies in the middle of its area, at √(50/64) of the radius.
         assert!((farthest - 8.86).abs() < 0.01, "{farthest}");
-        // Further out it is as wide.
+        // The angular size does not depend on the distance.
         let outside = Light { position: sun.position.map(|c| 3.0 * c), ..sun.clone() };
         assert_eq!(outside.in_scene(&Camera::default()).area, resolved.area);
     }

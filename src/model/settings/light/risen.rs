@@ -1,4 +1,4 @@
-//! What of a light that has a size stands above the horizon of a surface that it shines at.
+//! Horizon clipping of area lights: the part of a light above the horizon of a surface that it illuminates.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -6,28 +6,29 @@ use glam::DVec3;
 
 use super::{LightKind, SceneLight};
 
-/// A light as a plane sees it.
+/// Visible part of a light above the horizon of a plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Risen {
-    /// Unit vector towards the middle of what stands above the plane's horizon; towards the light's own middle as far as it
-    /// is no surface.
+    /// Unit vector towards the centroid of the part above the plane's horizon; towards the light's own centre to the
+    /// degree that the sample is not a surface.
     pub towards: DVec3,
-    /// Cosine between the plane's normal and the direction to the light's own middle …
+    /// Cosine between the plane's normal and the direction to the light's own centre.
     pub middle: f64,
-    /// … and the mean of those to all that stands above.
+    /// Mean cosine between the plane's normal and the directions to the visible part.
     pub facing: f64,
-    /// The share of the light that does, 0 … 1; 1 of a point, which `facing` tells more of.
+    /// Visible share of the light, 0 … 1; 1 for a point, for which `facing` decides.
     pub share: f64,
 }
 
-/// So little above a disc's lower end, what has risen is a thin segment: of 1.5 % of its area.
+/// Height above a disc's lower end up to which the visible part is a thin segment: 1.5 % of its area.
 const THIN: f64 = 0.02;
 
-/// Of a disc of radius 1 whose middle stands at a height above the horizon, −1 … 1: the share that has risen, and how high
-/// the middle of that stands.
+/// Returns the share of a unit disc above the horizon, and the height of that part's centroid above the horizon, for
+/// a disc centre at `height` −1 … 1.
 ///
 /// With u the height, the share is (π/2 + asin u + u√(1 − u²)) / π, and the mean of max(0, u + y) over the disc is
-/// (u (π/2 + asin u) + √(1 − u²) (2 + u²) / 3) / π. The middle stands at their ratio; that of a thin segment at 2/5 of its
+/// (u (π/2 + asin u) + √(1 − u²) (2 + u²) / 3) / π. The centroid lies at their ratio; that of a thin segment at 2/5
+/// of its
 /// height.
 fn risen_disc(height: f64) -> (f64, f64) {
     let (quarter, root) = (FRAC_PI_2 + height.asin(), (1.0 - height * height).sqrt());
@@ -37,7 +38,7 @@ fn risen_disc(height: f64) -> (f64, f64) {
 }
 
 impl SceneLight {
-    /// Unit vector from a place to the light's middle.
+    /// Returns the unit vector from a point in the scene to the light's centre.
     pub fn towards(&self, place: DVec3) -> DVec3 {
         match self.kind {
             LightKind::Parallel => self.direction(),
@@ -45,11 +46,11 @@ impl SceneLight {
         }
     }
 
-    /// sin² of half the width of the light as it is seen from a place; 0 of a point.
+    /// Returns sin² of half the angular width of the light as seen from a point in the scene; 0 for a point light.
     pub fn width_seen(&self, place: DVec3) -> f64 {
         let Some(area) = self.area else { return 0.0 };
         let away = match self.kind {
-            // Its extent is that of one at a distance of 1.
+            // The extent of a parallel light is that of one at distance 1.
             LightKind::Parallel => 1.0,
             LightKind::Perspective => DVec3::from(self.position).distance(place),
         };
@@ -57,8 +58,9 @@ impl SceneLight {
         tangent / (1.0 + tangent)
     }
 
-    /// What a plane at a place sees of the light, whatever its shape as if that were a disc. `normal`: to where the plane
-    /// faces, a unit vector; `weight`: how much of a surface it is, which turns the direction.
+    /// Returns the part of the light above the horizon of a plane at `place`, with any shape treated as a disc.
+    /// `normal`: unit normal of the plane; `weight`: degree to which the sample is a surface, which tilts the
+    /// direction.
     pub fn risen(&self, place: DVec3, normal: DVec3, weight: f64) -> Risen {
         let towards = self.towards(place);
         let half_width = self.width_seen(place).sqrt();
@@ -67,7 +69,7 @@ impl SceneLight {
             return Risen { towards, middle, facing: middle, share: 1.0 };
         }
         let height = middle / half_width;
-        // Where nothing has risen there is nothing to turn to; it turns back by and by.
+        // Nothing is visible, so there is no centroid; the direction returns gradually.
         let (share, risen, up) = if height > -1.0 {
             let (share, risen) = risen_disc(height);
             (share, risen, risen - height)
@@ -84,7 +86,7 @@ mod tests {
     use super::*;
     use crate::model::{Camera, Light, LightShape};
 
-    /// Against a disc of small squares.
+    /// Compares with a disc of small squares.
     #[test]
     fn middles_are_those_of_what_has_risen() {
         for height in [-0.995, -0.9, -0.5, 0.0, 0.3, 0.8, 1.0] {
@@ -134,7 +136,7 @@ mod tests {
         assert!(
             (half.share - 0.5).abs() < 1e-9 && (half.facing - 4.0 / (3.0 * PI) * half_width).abs() < 1e-9
         );
-        // What is no surface is not turned to, and points are risen or not.
+        // Without a surface the direction is not tilted, and points are either visible or not.
         assert_eq!(seen(-half_width, 0.0).0.towards, DVec3::X);
         let point = SceneLight { area: None, ..light }.risen(DVec3::ZERO, DVec3::NEG_X, 1.0);
         assert_eq!(point, Risen { towards: DVec3::X, middle: -1.0, facing: -1.0, share: 1.0 });

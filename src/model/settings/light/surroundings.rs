@@ -1,4 +1,4 @@
-//! Lighting a scene as its surroundings in a picture would.
+//! Image-based lighting: sky and key light from an environment map.
 
 use glam::DVec3;
 
@@ -8,22 +8,22 @@ use super::{Light, LightKind, LightLock, MAX_LIGHTS};
 use crate::data::{BrightLight, Surroundings};
 use crate::model::{MAX_LIGHT_ANGLE_DEG, Settings, srgb_from_linear};
 
-/// The name of the light that a picture of surroundings brings.
+/// Name of the light that an environment map adds.
 pub const SURROUNDINGS: &str = "Surroundings";
 
-/// How far from the middle such a light stands, which says nothing of its direction.
+/// Distance of the added light from the centre, in scene units; only its direction matters.
 const DISTANCE: f64 = 3.8;
 
-/// Lights that look smaller than this throw shadows as sharp as those of points.
+/// Angular width in degrees below which a light's shadows are as sharp as those of a point.
 const SMALL_DEG: f64 = 0.3;
 
 impl Settings {
-    /// Lights the scene by surroundings: by a sky of what is linear in them, and a light for the brightest in them. Other
-    /// lights are switched off; one that an earlier picture brought makes room.
+    /// Lights the scene by an environment map: by a sky with its linear part, and a light for its brightest spot.
+    /// Other lights are switched off; one that an earlier map added is replaced.
     ///
-    /// The surroundings turn so that their light comes from the side where the key light stood, which had been placed for
-    /// the object. They are as bright as that was with what made up for its shadows, which stays as it is from now on: the
-    /// picture says how bright each light is.
+    /// The map is rotated so that its light comes from the side of the previous key light, which had been placed for
+    /// the object. Its brightness includes the previous exposure compensation for shadows (balance), which is no
+    /// longer re-measured: the map defines how bright each light is.
     pub fn surround(&mut self, surroundings: &Surroundings) {
         let up = self.camera.up;
         let upright_from_scene = up.scene_from_upright().transpose();
@@ -32,7 +32,7 @@ impl Settings {
         let key = key.map(|light| upright_from_scene * light.in_scene(&self.camera).direction());
         let sky = &mut self.sky;
         sky.mode = SkyMode::Picture;
-        // Of lights alone it is a factor.
+        // The balance applies to lights only.
         sky.intensity = surroundings.brightness * self.shadows.balance;
         sky.picture = SkyPicture {
             name: surroundings.name.clone(),
@@ -55,7 +55,7 @@ impl Settings {
                 kind: LightKind::Parallel,
                 position: place.into(),
                 color: color.map(|c| srgb_from_linear(c) as f32),
-                // Surfaces give back so much of lights, and all of a sky.
+                // Surfaces reflect this share of lights, and all of a sky.
                 intensity: intensity / self.shading.diffuse.max(0.05),
                 lock: LightLock::Scene,
                 shape,
@@ -105,7 +105,7 @@ mod tests {
             let towards = up.scene_from_upright().transpose() * DVec3::from(light.position).normalize();
             assert!((towards - DVec3::new(0.6, 0.0, 0.8)).length() < 1e-9, "{up:?}: {towards}");
             assert_eq!((settings.sky.mode, settings.sky.intensity), (SkyMode::Picture, 0.6));
-            // Another picture takes its place.
+            // A second map replaces the first.
             settings.surround(&surroundings());
             assert_eq!(settings.lights.len(), 2);
         }

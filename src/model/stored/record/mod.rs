@@ -1,7 +1,7 @@
-//! A look together with what it is of: what a session file holds, and what an exported picture carries.
+//! Record of a look together with its volume: the format of session files and of metadata in exported images.
 //!
-//! Settings stand at the top, as in a preset; what is no setting has a name that begins with an underscore,
-//! which readers of presets pass over.
+//! Settings are at the top level, as in a preset; everything else has a name that begins with an underscore, which
+//! readers of presets ignore.
 
 #[cfg(test)]
 mod tests;
@@ -21,50 +21,51 @@ use crate::data::load::Choice;
 use crate::data::{Corrections, ValueRanges};
 use crate::model::{ImageSpec, PresetError, SCHEMA, Settings, VolumePlace, apply_relative};
 
-/// The name of the setting that is of the volume of a record, and not of its look.
+/// Name of the setting that belongs to a record's volume, and not to its look.
 const CORRECTIONS: &str = "volume";
 
-/// The volume of a look.
+/// Reference to the volume of a look.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct VolumeRecord {
-    /// A file, relative to that of the record where it lies below it, or `builtin:NAME`.
+    /// Path of the file, relative to the record's folder if it is inside, or `builtin:NAME`.
     pub source: String,
-    /// Every byte of that file's path ([`encode_path`]), where `source` cannot say it: not all names are text.
+    /// Lossless encoding of that path ([`encode_path`]), if `source` cannot represent it: file names need not be
+    /// text.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source_bytes: Option<String>,
-    /// Identifies values and geometry of the file, in hexadecimal digits.
+    /// Identifier of the file's values and geometry (its content ID), in 16 hexadecimal digits.
     pub content_id: String,
-    /// Which of several volumes of the file it is.
+    /// Selected volume, if the file has several.
     #[serde(default, skip_serializing_if = "Choice::is_empty")]
     pub choice: Choice,
 }
 
-/// How a picture was made.
+/// Metadata of a rendered image.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PictureRecord {
-    /// Size and fineness.
+    /// Size, samples and format of the image.
     #[serde(flatten)]
     pub shot: ImageSpec,
-    /// Version of this program.
+    /// Version of Chiaroscuro that rendered it.
     pub version: String,
-    /// The graphics adapter and its driver.
+    /// Name of the graphics adapter and its driver.
     pub adapter: String,
 }
 
-/// What a file says beside the settings, and the settings as they are written there.
+/// Settings and metadata as read from a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Record {
     overlay: Value,
-    /// What was cut when it was read.
+    /// Descriptions of what was cut while reading.
     cuts: Vec<String>,
-    /// What it is of.
+    /// Volume of the look, if recorded.
     pub volume: Option<VolumeRecord>,
-    /// How the picture that carries it was made.
+    /// Metadata of the image that contains the record.
     pub picture: Option<PictureRecord>,
 }
 
 impl VolumeRecord {
-    /// A volume that was opened from `source`, for a record that is written to `folder`.
+    /// Creates a reference to a volume opened from `source`, for a record that will be written to `folder`.
     pub fn new(source: impl AsRef<Path>, content_id: u64, folder: Option<&Path>) -> Self {
         let source = source.as_ref();
         let is_builtin = source.to_str().is_some_and(|name| name.starts_with("builtin:"));
@@ -74,41 +75,42 @@ impl VolumeRecord {
         Self { source: path.display().to_string(), source_bytes, content_id, choice }
     }
 
-    /// Which of several volumes of the file it is.
+    /// Sets the selected volume of a file with several.
     #[must_use]
     pub fn choosing(self, choice: Choice) -> Self {
         Self { choice, ..self }
     }
 
-    /// What was opened. Bytes count only where they are what `source` shows as well as it can.
+    /// Returns the path of the volume. The encoded path is used only if it matches `source`.
     fn path(&self) -> PathBuf {
         let bytes = self.source_bytes.as_deref().and_then(decode_path);
         let path = bytes.filter(|path| path.to_string_lossy() == self.source.as_str());
         path.unwrap_or_else(|| PathBuf::from(&self.source))
     }
 
-    /// Where it is, for a record that was read from `folder`; without one, as for a record that is in no folder.
+    /// Returns the location of the volume, for a record read from `folder`; `None` stands for a record that is in no
+    /// folder.
     pub fn place(&self, folder: Option<&Path>) -> VolumePlace {
         VolumePlace::of(&self.path(), folder)
     }
 
-    /// Whether a volume has the values and the geometry that this one had.
+    /// Returns true if a volume has the recorded values and geometry.
     pub fn is_of(&self, content_id: u64) -> bool {
         self.content_id == format!("{content_id:016x}")
     }
 }
 
 impl PictureRecord {
-    /// A picture that this version makes on an adapter.
+    /// Creates the metadata of an image rendered by this version on an adapter.
     pub fn new(shot: ImageSpec, adapter: String) -> Self {
         Self { shot, version: env!("CARGO_PKG_VERSION").to_owned(), adapter }
     }
 }
 
-/// A path as seen from a folder, if it lies below it; else the whole of it.
+/// Returns a path relative to a folder if it lies inside, else the absolute path.
 fn relative(source: &Path, folder: Option<&Path>) -> PathBuf {
     let whole = std::path::absolute(source).unwrap_or_else(|_| source.to_owned());
-    // The folder of a bare name is the current one.
+    // An empty path stands for the current folder.
     let here =
         |folder: &Path| if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder.to_owned() };
     let folder = folder.and_then(|folder| std::path::absolute(here(folder)).ok());
@@ -117,7 +119,7 @@ fn relative(source: &Path, folder: Option<&Path>) -> PathBuf {
 }
 
 impl Record {
-    /// The text of a record.
+    /// Serialises a record of settings, volume and image metadata.
     pub fn text(
         settings: &Settings,
         volume: Option<&VolumeRecord>,
@@ -126,8 +128,7 @@ impl Record {
         Self::text_with(settings, volume, picture, &Value::Null)
     }
 
-    /// The text of a record that takes the place of another, which said something that this version does not know;
-    /// see [`Self::unknown`].
+    /// Serialises a record that replaces another, with the unknown content of the other; see [`Self::unknown`].
     pub fn text_with(
         settings: &Settings,
         volume: Option<&VolumeRecord>,
@@ -147,14 +148,15 @@ impl Record {
         unknown::add(&mut tree, unknown);
         let tree = tells_maker(tree);
         let pretty = serde_json::to_string_pretty(&tree).unwrap_or_default();
-        // The longest transfer functions are within what is read only without spaces.
+        // The longest transfer functions fit into the limit only without whitespace.
         if pretty.len() > MAX_LOOK_BYTES { tree.to_string() } else { pretty }
     }
 
-    /// Reads a record. Any preset is one, of no volume.
+    /// Parses a record. Any preset is a record without a volume.
     ///
     /// # Errors
-    /// When the text is not a JSON object, its remarks have the wrong form, or it has more than any look.
+    /// Returns an error if the text is not a JSON object, its metadata have the wrong type, or the limits of a look
+    /// are exceeded.
     pub fn read(text: &str) -> Result<Self, PresetError> {
         let Bounded { tree: overlay, cuts } = bounds::read(text)?;
         if !overlay.is_object() {
@@ -168,33 +170,32 @@ impl Record {
         })
     }
 
-    /// Reads a record from the bytes of a file.
+    /// Parses a record from the bytes of a file.
     ///
     /// # Errors
-    /// As [`Self::read`], and when the bytes are no text.
+    /// As [`Self::read`], and if the bytes are not UTF-8.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, PresetError> {
         Self::read(std::str::from_utf8(bytes).map_err(PresetError::NoText)?)
     }
 
-    /// Whether all settings of the record are understood: nothing was cut, none is unknown or of a wrong form, and it
-    /// is not of a newer version. What is not understood is lost where the record is written again.
+    /// Returns true if all of the record is understood: nothing was cut, no setting is unknown or of a wrong type,
+    /// and the version is not newer. Other content is lost when the record is saved again.
     pub fn is_understood(&self) -> bool {
         let applied = self.apply(&Settings::default(), &ValueRanges::UNIT);
         applied.is_ok_and(|(_, warnings)| warnings.is_empty())
     }
 
-    /// Whether something was cut, because it was more than a look has: it would be lost where the record is written
-    /// again.
+    /// Returns true if content beyond a look's limits was cut, which is lost when the record is saved again.
     pub fn was_cut(&self) -> bool {
         !self.cuts.is_empty()
     }
 
-    /// The schema that the record names; a preset names none.
+    /// Returns the record's schema number; a preset has none.
     pub fn schema(&self) -> Option<u64> {
         self.overlay.get("schema").and_then(Value::as_u64)
     }
 
-    /// What the record says that this version does not know, and remarks of others; null if there is nothing.
+    /// Returns the unknown settings and the remarks of other programs; null if there are none.
     pub fn unknown(&self) -> Value {
         let understood = self.apply(&Settings::default(), &ValueRanges::UNIT).map(|(settings, _)| settings);
         let Ok(tree) = understood.map(|settings| serde_json::to_value(settings).unwrap_or_default()) else {
@@ -205,17 +206,17 @@ impl Record {
         unknown::beyond(&given, &tree)
     }
 
-    /// Whether the record is of an earlier schema, whose pictures this version may make a little differently.
+    /// Returns true if the record has an earlier schema, whose images this version may render a little differently.
     pub fn is_earlier(&self) -> bool {
         self.schema().is_some_and(|schema| schema < SCHEMA.into())
     }
 
-    /// Whether the record says how the lights are balanced.
+    /// Returns true if the record sets the balance of the lights.
     pub fn names_balance(&self) -> bool {
         self.names("shadows.balance")
     }
 
-    /// Whether the record says something of a setting, by its path: also by its schema alone.
+    /// Returns true if the record sets the setting at a path, explicitly or by its schema.
     pub fn names(&self, path: &str) -> bool {
         let mut given = self.overlay.clone();
         rename("", &mut given);
@@ -223,8 +224,8 @@ impl Record {
         given.pointer(&format!("/{}", path.replace('.', "/"))).is_some()
     }
 
-    /// How the volume of the record was corrected, if a volume is that one: `opened_id` is that of the file. Records from
-    /// before there were corrections are of volumes without any.
+    /// Returns the recorded corrections, if `opened_id` identifies the record's volume as opened from the file.
+    /// Records from before corrections existed have none.
     pub fn corrections_of(&self, opened_id: u64) -> Option<Corrections> {
         self.volume.as_ref().filter(|of| of.is_of(opened_id))?;
         let said = self.overlay.get(CORRECTIONS).and_then(|said| Corrections::deserialize(said).ok());
@@ -233,8 +234,8 @@ impl Record {
         Some(corrections)
     }
 
-    /// The settings of the record laid over others, for a volume with these values, and warnings of what was not
-    /// understood. What is corrected of the volume stays as it is: see [`Self::corrections_of`].
+    /// Applies the record's settings to others, for a volume with the given value ranges, and returns them with
+    /// warnings about what was not understood. Corrections stay unchanged: see [`Self::corrections_of`].
     ///
     /// # Errors
     /// As [`apply_relative`].

@@ -1,4 +1,4 @@
-//! What records keep, and what they refuse.
+//! Tests of records: round trips, unknown content, and rejected input.
 
 use super::*;
 use crate::model::{ControlPoint, Depth, Kept};
@@ -53,7 +53,7 @@ fn corrections_go_with_the_volume_of_a_record_and_with_no_other() {
     assert_eq!(record.corrections_of(8), None);
     let (applied, warnings) = record.apply(&Settings::default(), &ValueRanges::UNIT).unwrap();
     assert!(applied.volume.is_none() && warnings.is_empty() && record.is_understood(), "{warnings:?}");
-    // From before there were any, and of no volume.
+    // A record from before corrections existed, and one without a volume.
     let before = r#"{"schema": 2, "_volume": {"source": "a.nrrd", "content_id": "0000000000000007"}}"#;
     assert_eq!(Record::read(before).unwrap().corrections_of(7), Some(Corrections::default()));
     let of_none = Record::read(&Record::text(&settings, None, None)).unwrap();
@@ -125,8 +125,8 @@ fn files_below_a_record_move_with_it() {
     assert_eq!(Path::new(&elsewhere.source), file);
 }
 
-/// A name that is no text is that of the same file afterwards; bytes that say something else than what is shown
-/// are not believed.
+/// Checks that a path that is not UTF-8 refers to the same file after a round trip; an encoded path that contradicts
+/// the displayed one is ignored.
 #[cfg(unix)]
 #[test]
 fn names_that_are_no_text_are_kept() {

@@ -1,4 +1,4 @@
-//! What moves with lights, and what their volumes are made from.
+//! Tests of changes to lights, and of the keys of their volumes.
 
 use super::{Effect, effect, effect_of, keys, request};
 use crate::model::{LightLock, LightShape, Resolution, SkyMode};
@@ -11,7 +11,7 @@ fn the_size_of_a_light_is_part_of_its_volume_alone() {
     before.settings.lights[2].shape = LightShape::Rectangle;
     for (path, value, expected) in [
         ("lights.1.angle_deg", "5", Effect::OneLight),
-        // The size of one is an angle, that of the other a length.
+        // The size of the disc is an angle, that of the rectangle a length.
         ("lights.1.size", "0.5", Effect::Nothing),
         ("lights.2.size", "0.5", Effect::OneLight),
         ("lights.2.angle_deg", "5", Effect::Nothing),
@@ -22,7 +22,7 @@ fn the_size_of_a_light_is_part_of_its_volume_alone() {
         ("lights.1.intensity", "2", Effect::Eye),
         ("shadows.area.samples", "16", Effect::AllLights),
         ("shadows.area.resolution", "full", Effect::AllLights),
-        // It is coarser already.
+        // The area light is coarser already.
         ("shadows.resolution", "half", Effect::OneLight),
     ] {
         assert_eq!(effect_of(&before, path, value), expected, "{path} = {value}");
@@ -87,12 +87,12 @@ fn colours_of_what_light_meets_count_where_shadows_are_coloured() {
     assert_eq!(effect_of(&before, "lighting.curve.points", "[]"), Effect::Nothing);
     before.settings.lighting.linked = false;
     before.settings.lighting.curve = before.settings.transfer.clone();
-    // The eye's are no longer those that light meets.
+    // The eye's colours no longer apply to light.
     assert_eq!(effect_of(&before, "lighting.curve.points.0.color", "[1,0,0]"), Effect::AllLights);
-    // Rays to lights meet them in the eye pass itself.
+    // Shadow rays use the colours in the eye pass itself.
     before.settings.shadows.algorithm = crate::model::ShadowAlgorithm::Direct;
     assert_eq!(effect_of(&before, "lighting.curve.points.0.color", "[1,0,0]"), Effect::Eye);
-    // And without any there are none.
+    // Without shadows, the colours have no effect.
     before.settings.shadows.algorithm = crate::model::ShadowAlgorithm::Off;
     assert_eq!(effect_of(&before, "shadows.transmission", "0.4"), Effect::Nothing);
 }

@@ -1,4 +1,4 @@
-//! What each setting changes: the keys that differ, setting by setting.
+//! Tests of the keys that each setting changes.
 
 mod lights;
 
@@ -32,14 +32,14 @@ fn request() -> Request {
     }
 }
 
-/// With light that bounces.
+/// Makes a request with light that bounces.
 fn bouncing() -> Request {
     let mut request = request();
     request.settings.scattering = Scattering { bounces: 4, ..Scattering::default() };
     request
 }
 
-/// With a table of labels.
+/// Makes a request with a table of labels.
 fn of_labels() -> Request {
     let mut request = bouncing();
     request.settings.labels.entry(1);
@@ -51,16 +51,16 @@ fn keys(request: &Request) -> FrameKeys {
     FrameKeys::of(request, &RenderOptions::default())
 }
 
-/// What a change is expected to cause.
+/// Expected effect of a change: the most expensive product that is recomputed.
 #[derive(Debug, PartialEq)]
 enum Effect {
     Nothing,
     Display,
     Floor,
     Eye,
-    /// What is open of it is found anew.
+    /// Sky visibility is recomputed.
     Sky,
-    /// Light bounces anew.
+    /// Bounced light is recomputed.
     Bounces,
     OneLight,
     AllLights,
@@ -101,7 +101,7 @@ fn every_setting_causes_what_the_design_says() {
         ("lights.1.intensity", "2", Effect::Bounces),
         ("lights.1.on", "false", Effect::Bounces),
         ("lights.1.casts_shadows", "false", Effect::Bounces),
-        // Further out is where a parallel light was before.
+        // A parallel light that moves outwards stays the same.
         ("lights.1.position", "[0,6,0]", Effect::Nothing),
         ("lights.1.position", "[0,6,1]", Effect::OneLight),
         ("lights.2.position", "[4,-4,5]", Effect::OneLight),
@@ -112,14 +112,14 @@ fn every_setting_causes_what_the_design_says() {
         ("lights.1.density_scale", "0.5", Effect::OneLight),
         ("lights.1.shape", "disc", Effect::OneLight),
         ("lights.2.shape", "ball", Effect::OneLight),
-        // A point has none of these.
+        // A point light has no size.
         ("lights.1.size", "0.5", Effect::Nothing),
         ("lights.1.angle_deg", "5", Effect::Nothing),
         ("lights.1.aspect", "2", Effect::Nothing),
         ("lights.1.turn_deg", "20", Effect::Nothing),
         ("range", "full", Effect::AllLights),
         ("range", r#"{"typed": [0, 2]}"#, Effect::AllLights),
-        // Beyond what the range holds: it is widened.
+        // The range is widened by points beyond it.
         ("transfer.points.1.value", "1.2", Effect::AllLights),
         ("transfer.points.0.color", "[1,0,0]", Effect::Bounces),
         ("transfer.points.1.opacity", "0.4", Effect::AllLights),
@@ -142,7 +142,7 @@ fn every_setting_causes_what_the_design_says() {
         ("shadows.strength", "0.5", Effect::Eye),
         ("shadows.ambient_offset", "0.1", Effect::Eye),
         ("shadows.gain", "2", Effect::Eye),
-        // Rays nearby take its place.
+        // Near-field rays replace the bias.
         ("shadows.bias_voxels", "1", Effect::Nothing),
         ("shadows.balance", "1.5", Effect::Bounces),
         ("shadows.transmission", "0.5", Effect::AllLights),
@@ -157,7 +157,7 @@ fn every_setting_causes_what_the_design_says() {
         ("shadows.storage", "combined", Effect::Eye),
         ("shadows.reverse_kernel", "forward", Effect::AllLights),
         ("shadows.near_field", "long", Effect::Eye),
-        // Of points.
+        // Point lights have no samples.
         ("shadows.area.samples", "16", Effect::Nothing),
         ("shadows.area.resolution", "full", Effect::Nothing),
         ("sky.mode", "off", Effect::Bounces),
@@ -167,7 +167,7 @@ fn every_setting_causes_what_the_design_says() {
         ("sky.horizon", "[1,0,0]", Effect::Bounces),
         ("sky.ground", "[1,0,0]", Effect::Bounces),
         ("sky.mode", "picture", Effect::Bounces),
-        // A gradient has none of it.
+        // A gradient sky uses no environment map.
         ("sky.picture", r#"{"mean": [1, 2, 3]}"#, Effect::Nothing),
         ("sky.tilt_deg", "30", Effect::Bounces),
         ("sky.turn_deg", "30", Effect::Bounces),
@@ -182,7 +182,7 @@ fn every_setting_causes_what_the_design_says() {
         ("scattering.density_scale", "0.5", Effect::Bounces),
         ("scattering.directions", "26", Effect::Bounces),
         ("scattering.resolution", "half", Effect::Bounces),
-        // There are as many.
+        // The volume has as many blocks already.
         ("shadows.least_blocks", "64", Effect::Nothing),
         ("shadows.least_blocks", "128", Effect::Sky),
         ("transfer.mixing", "seen", Effect::Bounces),
@@ -202,13 +202,13 @@ fn every_setting_causes_what_the_design_says() {
         ("sampling.gradients", "sheets", Effect::Eye),
         ("sampling.classification", "pre", Effect::AllLights),
         ("sampling.engine", "scatter", Effect::AllLights),
-        // Gathering has no order.
+        // The gathering engine has no order.
         ("sampling.order", "volume_aligned", Effect::Nothing),
         ("output.background.top", "[0,0,0]", Effect::Display),
         ("output.background.bottom", "[0,0,0]", Effect::Display),
         ("output.tone_map", "clip", Effect::Display),
         ("output.exposure", "2", Effect::Display),
-        // They make another volume, which changes every key, and are in none.
+        // Corrections make another volume, whose identity is in every key.
         ("volume.spacing", "[0.5, 0.5, 2]", Effect::Nothing),
         ("volume.unit", "um", Effect::Nothing),
         ("volume.flip.x", "true", Effect::Nothing),
@@ -223,7 +223,7 @@ fn every_setting_causes_what_the_design_says() {
     for (path, value, expected) in &table {
         assert_eq!(&effect_of(&bouncing(), path, value), expected, "{path} = {value}");
     }
-    // Of a look of labels.
+    // Looks of labels.
     for (path, value, expected) in [
         ("labels.1.name", "Liver", Effect::Nothing),
         ("labels.1.color", "[1,0,0]", Effect::Bounces),
@@ -231,10 +231,10 @@ fn every_setting_causes_what_the_design_says() {
         ("labels.1.visible", "false", Effect::AllLights),
         ("labels", r#"{"1": {}, "2": {"visible": false}}"#, Effect::Nothing),
         ("labels", r#"{"1": {}, "2": {}}"#, Effect::AllLights),
-        // Hidden is hidden, however opaque.
+        // A hidden label has no opacity.
         ("labels.2.opacity", "0.5", Effect::Nothing),
         ("labels", "{}", Effect::AllLights),
-        // They wait until there is no table.
+        // Settings without effect while there is a table of labels.
         ("range", "full", Effect::Nothing),
         ("lighting.linked", "false", Effect::Nothing),
         ("lighting.curve.interpolation", "extinction", Effect::Nothing),
@@ -244,7 +244,7 @@ fn every_setting_causes_what_the_design_says() {
     ] {
         assert_eq!(effect_of(&of_labels(), path, value), expected, "{path} = {value}");
     }
-    // The table is complete: every leaf of the settings is named, or lies below a name.
+    // The table is complete: every leaf of the settings is listed, or lies below a listed path.
     let tree: Value = serde_json::from_str(&to_json(&request().settings)).unwrap();
     let mut leaves = Vec::new();
     collect(&tree, String::new(), &mut leaves);
@@ -301,10 +301,10 @@ fn an_unlinked_lighting_curve_frees_the_eye() {
     before.settings.lighting.linked = false;
     before.settings.sky.mode = SkyMode::Off;
     assert_eq!(effect_of(&before, "transfer.points.1.opacity", "0.4"), Effect::Eye);
-    // Rays to lights meet the lighting curve in the eye pass itself.
+    // Shadow rays use the lighting curve in the eye pass itself.
     before.settings.shadows.algorithm = crate::model::ShadowAlgorithm::Direct;
     assert_eq!(effect_of(&before, "lighting.scale", "0.4"), Effect::Eye);
-    // That of a sky has a volume, whatever lights have.
+    // Sky light has a volume, regardless of the shadow algorithm of lights.
     before.settings.sky.mode = SkyMode::White;
     assert_eq!(effect_of(&before, "lighting.scale", "0.4"), Effect::Sky);
 }
