@@ -1,14 +1,14 @@
-// What passes of scattered light share: blocks, and what scatters light in them.
+// Declarations shared by the passes of scattered light: blocks and their scattering.
 #import "common/most_light.wgsl"
 
 struct Bounce {
-    // Blocks.
+    // Number of blocks along x, y and z.
     dims: vec3u,
     // One over the number of directions.
     share: f32,
-    // That of light which has one colour all through, whose amount is then the first of three.
+    // Common colour of all light, if there is one; its amount is then stored in the first component.
     color: vec3f,
-    // Blocks of less extinction are left out.
+    // Minimum extinction of the blocks that are processed.
     least: f32,
 }
 
@@ -17,7 +17,7 @@ var<private> bounce: Bounce;
 // Scattering in rgb, extinction in a: optical depths per shortest edge of a voxel.
 @group(0) @binding(4) var<storage, read> scattering: array<vec4f>;
 
-// The place of a block in lists.
+// Index of a block in the lists.
 fn number_of(id: vec3u) -> u32 {
     return (id.z * bounce.dims.y + id.y) * bounce.dims.x + id.x;
 }

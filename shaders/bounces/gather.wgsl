@@ -1,5 +1,5 @@
-// The light that listed blocks receive from all around: its sum over the directions of a batch, gathered from the rays around
-// their middles and added to those of the batches before.
+// Gathering of swept light at listed blocks: the sum over the directions of a batch, interpolated between the rays
+// around each block's centre and added to the sums of earlier batches.
 #import "sky/rays.wgsl"
 #import "bounces/bounce.wgsl"
 #import "common/listed_cells.wgsl"
@@ -9,7 +9,7 @@
 @group(0) @binding(5) var<storage, read_write> sums: array<vec4f>;
 @group(0) @binding(6) var<storage, read> cells: array<u32>;
 
-// Rays of a batch. Not a number of the uniform's: drivers lay out a loop whose end they know.
+// Number of directions in a batch. A constant rather than a uniform, because drivers unroll loops with a known end.
 override DIRECTIONS: u32 = 4u;
 
 @compute @workgroup_size(64)

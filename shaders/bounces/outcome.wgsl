@@ -1,4 +1,4 @@
-// The light that listed blocks receive that has been scattered: what the last bounce brings.
+// Result of the bounces: stores the light that listed blocks receive with the last one.
 #import "bounces/bounce.wgsl"
 #import "common/listed_cells.wgsl"
 

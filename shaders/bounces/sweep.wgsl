@@ -1,17 +1,17 @@
-// The march of scattered light along parallel rays: one thread per ray walks slices of blocks, and stores for each the
-// mean light there: what is left of that from behind, L, and of what the slice gives off, S. Of a slab of optical depth τ
-// with m = (1 − e^−τ)/τ that is L m + S (1 − m), and L e^−τ + S (1 − e^−τ) leaves it.
+// Sweep of scattered light along parallel rays: one thread per ray walks through slices of blocks, and stores the
+// mean light in each: attenuated light from behind, L, and emission of the slice, S. For a slab of optical depth τ
+// with m = (1 − e^−τ)/τ the mean is L m + S (1 − m), and L e^−τ + S (1 − e^−τ) leaves it.
 #import "sky/rays.wgsl"
 #import "sky/near.wgsl"
 #import "common/slab_source.wgsl"
 #import "common/most_light.wgsl"
 
-// What blocks give off per shortest edge, S times extinction, and extinction: in rgb and a, or in r and g.
+// Emission per shortest edge (S times extinction) and extinction: in rgb and a, or in r and g.
 @group(0) @binding(1) var medium: texture_3d<f32>;
 @group(0) @binding(2) var clamped: sampler;
 @group(0) @binding(3) var sheets: texture_storage_3d<TARGET_FORMAT, write>;
 
-// Of light that has one colour all through its amount is followed: a third of the numbers.
+// If all light has one colour only its amount is followed, a third of the numbers.
 #if ONE_COLOR
 alias Light = f32;
 
@@ -53,7 +53,7 @@ fn texel_of(light: Light) -> vec4f {
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     sweep = bound_sweep;
-    // Not from the copy: an index that varies would keep that as an array in memory.
+    // Indexed in the uniform: copying an array that is indexed dynamically would keep it in memory.
     let rays = bound_sweep.rays[id.z];
     if (any(id.xy >= rays.size)) {
         return;

@@ -1,5 +1,5 @@
-// What is left of a light, 0 … 1, and what it meets: of all light alike or, where shadows are coloured, of red, green and
-// blue light. Tables of what light meets hold the shares of the extinction that each colour meets, in place of colours.
+// Transmittance, 0 … 1, and extinction of light: a scalar, or red, green and blue where shadows are coloured. Tables
+// of coloured extinction hold the share of the extinction for each colour of light in place of the material's colour.
 #if COLORED
 alias Left = vec3f;
 #else
@@ -14,7 +14,7 @@ fn stored_left(texel: vec4f) -> Left {
 #endif
 }
 
-// The extinction that an entry of a table of what light meets stands for.
+// Extinction of light for an entry of its table.
 fn extinction_of(entry: vec4f) -> Left {
 #if COLORED
     return entry.rgb * entry.a;

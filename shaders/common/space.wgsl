@@ -1,4 +1,4 @@
-// How the grid lies in scene space (src/math/scene.rs).
+// Transforms between index space and scene space (src/math/scene.rs).
 struct Space {
     // Index space to scene space: three rows of an affine map.
     scene_from_index_x: vec4f,
@@ -10,7 +10,7 @@ struct Space {
     index_from_scene_z: vec4f,
 }
 
-// The place of an index-space point.
+// Scene-space position of an index-space point.
 fn place_of(space: Space, p: vec3f) -> vec3f {
     let point = vec4f(p, 1.0);
     return vec3f(
@@ -20,7 +20,7 @@ fn place_of(space: Space, p: vec3f) -> vec3f {
     );
 }
 
-// A vector of scene space, in index space.
+// Index-space vector of a scene-space vector.
 fn to_index(space: Space, v: vec3f) -> vec3f {
     return vec3f(
         dot(space.index_from_scene_x.xyz, v),
@@ -29,7 +29,7 @@ fn to_index(space: Space, v: vec3f) -> vec3f {
     );
 }
 
-// A gradient over index space, per scene unit: it transforms with (index ← scene)ᵀ.
+// Scene-space gradient of an index-space gradient: it transforms with (index ← scene)ᵀ.
 fn gradient_to_scene(space: Space, gradient: vec3f) -> vec3f {
     return space.index_from_scene_x.xyz * gradient.x + space.index_from_scene_y.xyz * gradient.y
         + space.index_from_scene_z.xyz * gradient.z;

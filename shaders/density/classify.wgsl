@@ -1,18 +1,17 @@
-// From densities to materials, before or after the kernel spreads them. Materials are linear colour and
-// extinction.
+// Classification: from density to material (linear colour and extinction), after or before reconstruction.
 //
-// PRECLASSIFY: voxels are classified, and then spread: what the pyramid holds is what they mean (volume/materials.wgsl),
-// its first channel is the density, and the table says how much extinction that is.
+// PRECLASSIFY: voxels are classified before reconstruction. The pyramid then holds materials (volume/materials.wgsl),
+// its first channel takes the place of density, and the table converts it to extinction.
 #import "density/table.wgsl"
 #import "density/volume.wgsl"
 
 #if PRECLASSIFY
-// What stands at a point when voxels are classified before they are spread.
+// Pre-classified material at a point, from the pyramid.
 fn spread(p: vec3f, level: f32) -> vec4f {
     return textureSampleLevel(pyramid_texture, clamped, (p + 4.5) * grid.pyramid_scale, level);
 }
 
-// The same of slab k where the ray crosses it.
+// Pre-classified material averaged over slab k, where the ray crosses it.
 fn slab_spread(frame: SheetFrame, ray: Ray, k: f32) -> vec4f {
     let depth = depth_of(frame, k);
     if (QUADRATURE == 2u) {
@@ -25,11 +24,11 @@ fn slab_spread(frame: SheetFrame, ray: Ray, k: f32) -> vec4f {
 }
 #endif
 
-// What a slab holds where a ray crosses it.
+// Sample of a slab where a ray crosses it.
 struct SlabSample {
     material: vec4f,
     density: f32,
-    // The share that is there, which is in the material's extinction; 1 where there was no need to ask.
+    // Presence, already included in the material's extinction; 1 where it was not evaluated.
     there: f32,
 }
 
@@ -42,7 +41,7 @@ fn slab_sample(frame: SheetFrame, ray: Ray, k: f32) -> SlabSample {
     let material = classify(density);
     var there = 1.0;
 #if MISSING
-    // Most of what is sampled is empty, and to know how much of nothing is there takes fetches.
+    // Most samples are empty; presence is only fetched for the others.
     if (material.a > 0.0) {
         there = slab_presence(frame, ray, k);
     }
@@ -53,7 +52,7 @@ fn slab_sample(frame: SheetFrame, ray: Ray, k: f32) -> SlabSample {
 #endif
 }
 
-// Its extinction alone.
+// Extinction of slab k, without colour.
 fn slab_extinction(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
     return classified_extinction(slab_density(frame, ray, k)) * slab_presence(frame, ray, k);
 }

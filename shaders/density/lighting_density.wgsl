@@ -1,16 +1,16 @@
-// What of the volume attenuates light where rays to lights are short: a fetch from the pyramid. PRECLASSIFY: from that of
-// what voxels mean for light, in which nothing is where no voxel is.
+// Extinction for near-field rays towards lights: one fetch from the pyramid. PRECLASSIFY: from the pyramid
+// pre-classified for light, which is 0 where no voxel is.
 #import "common/left.wgsl"
 #import "density/table.wgsl"
 #import "density/volume.wgsl"
 
-// The lighting transfer function.
+// Transfer function of light.
 @group(0) @binding(4) var<storage, read> lighting_table: TransferTable;
 
 #if PRECLASSIFY
 @group(1) @binding(10) var lighting_pyramid: texture_3d<f32>;
 
-// A share of the largest extinction, or of each colour one.
+// Extinction relative to the maximum, for each colour of light if shadows are coloured.
 alias Met = Left;
 #else
 alias Met = f32;
@@ -37,7 +37,7 @@ fn lighting_presence(p: vec3f, level: f32) -> f32 {
 #endif
 }
 
-// How much extinction one of the shares is, or the density.
+// Extinction for a density or a relative extinction, interpolated in the table.
 fn extinction_between(density: f32) -> Left {
     let at = table_entry(density);
     return mix(extinction_of(lighting_table.entries[at.low]), extinction_of(lighting_table.entries[at.low + 1u]), Left(at.fraction));
@@ -55,11 +55,11 @@ fn met_extinction(met: Met) -> Left {
 #endif
 }
 
-// The same by the nearest entry alone.
+// Extinction from the nearest table entry, without interpolation.
 fn met_nearly(met: Met) -> Left {
 #if PRECLASSIFY
 #if COLORED
-    // Of shares entries have no colours of their own.
+    // Tables of relative extinction have no colours.
     return vec3f(
         lighting_table.entries[nearest_entry(met.r)].a,
         lighting_table.entries[nearest_entry(met.g)].a,

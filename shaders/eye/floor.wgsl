@@ -1,6 +1,6 @@
-// The floor under the volume: one thread per pixel finds where its ray meets the floor, and sends a ray from
-// there to each light, through all that attenuates it. The result is linear and premultiplied; what the volume
-// covers is laid over it when the picture is shown (output/display.wgsl).
+// Floor under the volume: one thread per pixel intersects its ray with the floor, and casts a ray from there to each
+// light, through everything that attenuates it. The result is linear and premultiplied; the display pass composites
+// the volume over it (output/display.wgsl).
 #import "common/sizes.wgsl"
 #import "density/classify.wgsl"
 #import "shading/shadow_ray.wgsl"
@@ -14,31 +14,31 @@ struct Floor {
     frame: SheetFrame,
     space: Space,
     shading: Shading,
-    // What attenuates light.
+    // Region that attenuates light.
     shading_cut: Cut,
-    // In index space: the floor is where dot(plane.xyz, p) = plane.w, and above it is more.
+    // Plane of the floor in index space: dot(plane.xyz, p) = plane.w; larger above it.
     plane: vec4f,
-    // In scene space: the floor looks there, and that far from the middle it lies.
+    // Normal of the floor in scene space, and the floor's height along it.
     up: vec3f,
     height: f32,
-    // Linear.
+    // Linear colour of the floor.
     color: vec3f,
     opacity: f32,
-    // Distance from the middle at which nothing is left, and what the way from whole to nothing is divided by.
+    // Radius at which the floor has faded out, and the width of the fade.
     radius: f32,
     fade: f32,
-    // Takes back what makes up for shadows on the volume.
+    // Inverse of the balance, which compensates for shadows on the volume only.
     light_share: f32,
-    // 1: seen only where it is in shadow.
+    // 1 if only the shadow is visible.
     shadow_only: f32,
-    // Rows of this dispatch: first, and one beyond the last.
+    // Range of rows of this dispatch; the end is exclusive.
     first_row: u32,
     end_row: u32,
-    // Runs of rows of tiles (sheets/tiles.wgsl).
+    // Number of interleaved runs of tile rows (sheets/tiles.wgsl).
     runs: u32,
     pad0: u32,
     sky: Sky,
-    // From scene space to texture coordinates of maps: vectors, and what is added.
+    // Affine map from scene space to texture coordinates of the floor's maps.
     map_x: vec4f,
     map_y: vec4f,
     lights: array<Light, MAX_LIGHTS>,
@@ -54,11 +54,11 @@ var<private> floor_disc: Floor;
 // C₁ in rgb, C₀ in a: see sky/floor_map.wgsl.
 @group(0) @binding(5) var sky_map: texture_3d<f32>;
 
-// Lights that are on; those that material attenuates come first.
+// Number of lights that are on; those that cast shadows come first.
 override LIGHTS: u32 = 1u;
 override SHADOWED: u32 = 1u;
 
-// Nobody sees less than this of the floor: an eighth of an 8-bit step.
+// Smallest visible opacity of the floor: an eighth of an 8-bit step.
 const LEAST = 0.0005;
 
 fn ray_extinction(frame: SheetFrame, ray: Ray, k: f32) -> Left {
@@ -79,19 +79,19 @@ fn light_distance(cell: vec3f) -> i32 {
     return near(distances, cell).y;
 }
 
-// Light on a floor that looks up: with all that material lets through, and as it would be without any.
+// Light on a floor that faces up: as attenuated by material, and unattenuated.
 struct Fallen {
     light: vec3f,
     bare: vec3f,
 }
 
-// Places on maps: of what it sees of the sky, and of lights.
+// Texture coordinates of the maps, for sky visibility and area lights.
 fn place_on_map(place: vec3f) -> vec3f {
-    // A map is one layer of a volume, for which there is something else to bind where there is none.
+    // Maps are volumes of one layer, so that the placeholder texture can be bound instead.
     return vec3f(dot(floor_disc.map_x, vec4f(place, 1.0)), dot(floor_disc.map_y, vec4f(place, 1.0)), 0.5);
 }
 
-// Lights that have a map of what gets there have no points.
+// Transmittance of a light from its map; lights with a map have zero points.
 fn left_on_map(slot: u32, at: vec3f) -> f32 {
     switch (slot) {
         case 0u: { return textureSampleLevel(attenuation_0, clamped, at, 0.0).r; }
@@ -133,12 +133,12 @@ fn fallen(slot: u32, light: Light, p: vec3f, place: vec3f) -> Fallen {
     return Fallen(bare * select(Left(hood), arriving, shadowed), bare * hood);
 }
 
-// What an open floor sees of the sky: moments over a hemisphere.
+// Moments of an unoccluded sky over a hemisphere.
 fn bare_sky() -> vec4f {
     return vec4f(floor_disc.up * (2.0 / 3.0), 1.0);
 }
 
-// What it sees of it at a place.
+// Moments of sky visibility at a point on the floor.
 fn open_sky(place: vec3f) -> vec4f {
 #if SKY > 1
     let stored = textureSampleLevel(sky_map, clamped, place_on_map(place), 0.0);
@@ -148,7 +148,7 @@ fn open_sky(place: vec3f) -> vec4f {
 #endif
 }
 
-// The sky's light on it, as a share of its colour.
+// Irradiance from the sky, divided by π.
 fn fallen_from_sky(open: vec4f) -> vec3f {
     let sky = floor_disc.sky;
     return max(vec3f(dot(sky.red, open), dot(sky.green, open), dot(sky.blue, open)), vec3f(0.0));
@@ -172,7 +172,7 @@ fn main(
     let p = ray.origin + ray.direction * depth;
     let place = place_of(floor_disc.space, p);
     let t = clamp((floor_disc.radius - distance(place, floor_disc.up * floor_disc.height)) / floor_disc.fade, 0.0, 1.0);
-    // From above, and in front of a perspective eye.
+    // Visible from above, and in front of a perspective eye.
     let is_seen = speed < 0.0 && 1.0 + depth * floor_disc.frame.inverse_distance > 1e-3;
     let presence = select(0.0, floor_disc.opacity * t * t * (3.0 - 2.0 * t), is_seen);
     var result = vec4f(0.0);
@@ -180,7 +180,7 @@ fn main(
         var light = vec3f(0.0);
         var bare = vec3f(0.0);
         for (var i = 0u; i < LIGHTS; i += 1u) {
-            // Not from the copy: an index that varies would keep that as an array in memory.
+            // Indexed in the uniform: copying an array that is indexed dynamically would keep it in memory.
             let one = fallen(i, bound_floor_disc.lights[i], p, place);
             light += one.light;
             bare += one.bare;

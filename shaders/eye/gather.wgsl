@@ -1,5 +1,5 @@
-// The picture (P §2, §3.5, eq. 9): one thread per pixel walks the eye's sheets front to back, sums
-// density, classifies the sum, shades it with the attenuated light and composites.
+// Eye pass (P §2, §3.5, eq. 9): one thread per pixel walks through the eye's sheets front to back, sums density,
+// classifies it, shades it with attenuated light and composites.
 //
 // The result is linear, premultiplied and not yet tone-mapped.
 #import "common/sizes.wgsl"
@@ -12,20 +12,19 @@
 #import "eye/slabs_by_need.wgsl"
 #import "eye/preintegrated_slabs.wgsl"
 
-// r: distance to the nearest cell that the eye's transfer function shows.
+// r: distance to the nearest cell that is visible to the eye.
 @group(0) @binding(2) var distances: texture_3d<f32>;
 @group(0) @binding(3) var picture: texture_storage_2d<rgba32float, write>;
-// For rays to lights: in g the distance in cells to the nearest that the lighting transfer function makes attenuate
-// light.
+// For rays to lights: g is the distance in cells to the nearest that attenuates light.
 @group(0) @binding(5) var light_distances: texture_3d<f32>;
 
-// DIRECT: cast rays to the lights instead of looking into volumes (P §3.3).
-// Take gradients from neighbouring sheets.
+// DIRECT: rays to the lights are cast instead of looking up volumes (P §3.3). SHEET_GRADIENTS: gradients are
+// differences of neighbouring sheets.
 override SHEET_GRADIENTS: bool = false;
-// BY_NEED: slabs are as thin as they need to be (slabs_by_need.wgsl).
-// PREINTEGRATED: opacity is integrated through steps, several of which are shaded once (preintegrated_slabs.wgsl).
+// BY_NEED: slabs are subdivided by need (slabs_by_need.wgsl). PREINTEGRATED: opacity is integrated through steps,
+// several of which are shaded together (preintegrated_slabs.wgsl).
 
-// Extinctions of the volume as rays to lights find them.
+// Extinction of slab k for rays to lights.
 fn ray_extinction(frame: SheetFrame, ray: Ray, k: f32) -> Left {
 #if PRECLASSIFY
     let depth = depth_of(frame, k);
@@ -61,14 +60,14 @@ fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towar
 #endif
 }
 
-// The sheet's value at a pixel and slab; nothing lies before the first slab or behind the last.
+// Value of a sheet at a pixel; 0 before the first slab and behind the last.
 fn sheet(pixel: vec2f, k: f32) -> f32 {
     let inside = k >= 0.0 && k < f32(eye.frame.slab_count);
     return select(0.0, slab_density(eye.frame, ray_of(eye.frame, pixel), k), inside);
 }
 
-// Differences between neighbouring sheets and their pixels, as a renderer that keeps only sheets has
-// them (scatter/eye.wgsl).
+// Differences between neighbouring sheets and their pixels, as an engine that stores only sheets has them
+// (scatter/eye.wgsl).
 fn gradient_between_sheets(pixel: vec2f, k: f32) -> vec3f {
     let last = vec2f(eye.frame.size - 1u);
     let reach = f32(eye.gradient_pixels);
@@ -81,7 +80,7 @@ fn gradient_between_sheets(pixel: vec2f, k: f32) -> vec3f {
     return gradient_of_sheets(pixel, depth_of(eye.frame, k), vec3f(across, down, deep), vec3f(0.0));
 }
 
-// The light from the material of slab k where the ray crosses it.
+// Light from the material of slab k, where the ray crosses it.
 fn shaded(ray: Ray, pixel: vec2u, k: i32, found: SlabSample) -> vec3f {
     let depth = depth_of(eye.frame, f32(k));
     let p = ray.origin + ray.direction * depth;
@@ -93,13 +92,13 @@ fn shaded(ray: Ray, pixel: vec2u, k: i32, found: SlabSample) -> vec3f {
     return lit_material(p, level, gradient_to_scene(eye.space, slope_at(p, level)), rising, found);
 }
 
-// The light from material where the gradient is `volume_slope` in scene space, and presence rises by `rising`.
+// Light from material with the gradient `volume_slope` in scene space; `rising` is the gradient of presence.
 fn lit_material(p: vec3f, level: f32, volume_slope: vec3f, rising: vec3f, found: SlabSample) -> vec3f {
     let slope = volume_slope + face_slope(p, level, found.density, rising);
     return shade(Sampled(p, slope, found.density, level), found.material.rgb);
 }
 
-// The next slab, from `first` on, in a cell that may show something; or one beyond the last.
+// Next slab, from `first` on, in a cell that may be visible; beyond the last if there is none.
 fn next_seen(walk: Walk, first: i32, last: i32) -> i32 {
     var k = first;
     loop {
@@ -116,7 +115,7 @@ fn next_seen(walk: Walk, first: i32, last: i32) -> i32 {
     return k;
 }
 
-// What a slab shows where the ray crosses it, whose middle is that of slab k and which is `width` as thick as that.
+// Sample of a slab centred at slab k and `width` times as thick, reduced to the part inside the cut.
 fn slab_seen(ray: Ray, span: vec2f, k: f32, width: f32) -> SlabSample {
     var found = slab_sample(eye.frame, ray, k);
     found.material.a *= share_within(span, depth_of(eye.frame, k), width * eye.frame.slab);
@@ -128,9 +127,9 @@ struct Sample {
     found: SlabSample,
 }
 
-// The next slab, from `first` on, that is worth sampling. Stretched kernels are sampled far around the cells
-// that show something, and mostly find nothing: the search goes on until they do, though all lanes of a vector
-// wait for the slowest. Otherwise that would take longer than shading what is not there.
+// Next slab, from `first` on, with visible material. Stretched kernels are sampled far around visible cells, and
+// mostly find nothing: the search continues until they do, although all lanes of a vector wait for the slowest. For
+// unstretched kernels the search would take longer than shading the few empty samples.
 fn next_sample(ray: Ray, walk: Walk, span: vec2f, first: i32, last: i32) -> Sample {
     var at = Sample(next_seen(walk, first, last), SlabSample(vec4f(0.0), 0.0, 1.0));
     if (STRETCH) {
@@ -151,11 +150,11 @@ fn next_sample(ray: Ray, walk: Walk, span: vec2f, first: i32, last: i32) -> Samp
     return at;
 }
 
-// What a ray shows.
+// Result of a ray.
 struct Seen {
-    // Linear, premultiplied.
+    // Linear, premultiplied colour.
     color: vec3f,
-    // Transmittance.
+    // Remaining transmittance of the ray.
     left: f32,
 }
 
@@ -164,8 +163,8 @@ fn even_slabs(ray: Ray, span: vec2f, inside: vec2i, pixel: vec2u) -> Seen {
     var at = next_sample(ray, walk, span, inside.x, inside.y);
     var color = vec3f(0.0);
     var t = 1.0;
-    // Software drivers run a loop's body to its end before they ask whether any lane is left: they leave from
-    // there, not from the middle.
+    // Software drivers run a loop's body to its end before they test if any lane is active, so breaks are placed at
+    // the end, not in the middle.
     loop {
         if (at.k > inside.y) {
             break;

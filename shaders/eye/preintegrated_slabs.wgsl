@@ -1,37 +1,38 @@
-// Slabs in two steps, through which opacity is integrated from the densities at both ends (Engel, Kraus and Ertl,
-// "High-quality pre-integrated volume rendering using hardware-accelerated pixel shading", 2001), and which are shaded in
-// layers: several steps once, where along the ray their opacity lies. What a thin part shows hardly depends on where
-// samples meet it. The slabs of the frame are as thick as steps, which reach from the middle of one to that of the next.
+// Pre-integrated slabs: opacity is integrated through steps from the densities at both ends (Engel, Kraus and Ertl,
+// "High-quality pre-integrated volume rendering using hardware-accelerated pixel shading", 2001), and steps are
+// shaded in layers: several together, where along the ray their opacity lies. So the look of thin structures hardly
+// depends on where samples hit them. The frame's slabs are as thick as steps; a step reaches from the middle of one
+// slab to that of the next.
 #import "density/cells.wgsl"
 #import "density/classify.wgsl"
 
-// Steps of a layer behind which it ends: two slabs. A step costs little beside shading.
+// Maximum number of steps in a layer: two slabs. A step is cheap compared with shading.
 const LAYER_STEPS = 4;
 
-// It ends a step earlier where material is softer than this, in optical depth of its last step: light changes little
-// within a surface that is opaque after a voxel, and more within what is not.
+// Optical depth of the last step below which a layer ends one step earlier: light varies little within a surface that
+// is opaque after a voxel, and more within softer material.
 const SOFT = 0.5;
 
-// Steps count from where a layer shows more than this share of the ray: 16 of 255, too little to be shaded by itself.
+// Share of the ray from which the steps of a layer are counted: 16 of 255, too little to be shaded separately.
 const FAINT = 0.0625;
 
-// Optical depth of a step that shows nothing: a thousandth of what 8 bits can.
+// Optical depth of an empty step: a thousandth of the smallest that 8 bits can show.
 const EMPTY = 4e-6;
 
-// The integral of extinction over densities up to one, as a position in the table.
+// Integral of extinction over densities from 0 to a position in the table.
 fn extinction_integral(at: f32) -> f32 {
     let low = min(u32(at), TABLE_SIZE - 2u);
     return mix(table.integrals[low], table.integrals[low + 1u], at - f32(low));
 }
 
-// An end of a step.
+// End point of a step.
 struct StepEnd {
     density: f32,
-    // As a position in the table …
+    // Position of the density in the table.
     entry: f32,
-    // … and extinction integrated up to there.
+    // Integral of extinction up to that position.
     integral: f32,
-    // The share of the material that is there.
+    // Presence at the point.
     there: f32,
 }
 
@@ -44,33 +45,33 @@ fn step_end(ray: Ray, k: i32) -> StepEnd {
     return StepEnd(found, entry, extinction_integral(entry), presence_at(p, level));
 }
 
-// Steps that are shaded at once.
+// Steps that are shaded together.
 struct Layer {
-    // Share of the ray's light that the layer gives: its opacity behind all layers before it.
+    // Contribution of the layer to the ray: its opacity behind all previous layers.
     share: f32,
-    // Sums of shares times places, in slabs of the frame, …
+    // Sum of contributions times positions, in slabs of the frame.
     places: f32,
-    // … and of shares times densities.
+    // Sum of contributions times densities.
     densities: f32,
-    // Transmittance of the ray behind it.
+    // Transmittance of the ray behind the layer.
     left: f32,
-    // Optical depth of its last step.
+    // Optical depth of the last step.
     last_depth: f32,
 }
 
-// Opacity-weighted mean depth in homogeneous material of optical depth τ, from its front, as a share of its thickness:
-// 1/τ − 1/(e^τ − 1), within 0.011.
+// Opacity-weighted mean depth in homogeneous material of optical depth τ, relative to its thickness: 1/τ − 1/(e^τ −
+// 1), within 0.011.
 fn mean_place(tau: f32) -> f32 {
     return (6.0 + tau) / (12.0 + tau * (4.0 + tau));
 }
 
-// A layer with one more step, from k to the next, along which density is linear; `length`: of the ray within it.
+// Adds a step from k to the next to a layer; density is linear along it, and `length` is the length of the ray in it.
 fn with_step(layer: Layer, a: StepEnd, b: StepEnd, k: i32, length: f32) -> Layer {
     let middle = 0.5 * (a.density + b.density);
     let entry = 0.5 * (a.entry + b.entry);
     let integral = extinction_integral(entry);
     let half = entry - a.entry;
-    // Integrals are linear between entries, and differences of close ones are rounding.
+    // Integrals are linear between entries, and differences of nearby ones are dominated by rounding.
     let is_even = abs(half) < 1.0;
     let per_half = 1.0 / select(half, 1.0, is_even);
     let alike = table.entries[nearest_entry(middle)].a;
@@ -91,16 +92,16 @@ fn with_step(layer: Layer, a: StepEnd, b: StepEnd, k: i32, length: f32) -> Layer
     );
 }
 
-// Color and transmittance of a ray between two slabs of the frame, the first and the last inside.
+// Colour and transmittance of a ray between two slabs of the frame, `inside.x` to `inside.y`.
 fn preintegrated_slabs(ray: Ray, span: vec2f, inside: vec2i) -> Seen {
     let walk = walk_along(eye.frame, ray);
     // A cut volume may end behind the middle of the last slab.
     let last = inside.y + select(0, 1, CUT);
     let step_length = eye.frame.slab * ray.obliquity;
-    // Steps begin at the slab before one that may show something.
+    // Steps begin at the slab before the first that may be visible.
     var k = next_seen(walk, inside.x, last) - 1;
     var before = StepEnd(0.0, 0.0, 0.0, 0.0);
-    // Whether the density of slab k is not known yet.
+    // Set while the density of slab k is unknown.
     var has_leapt = true;
     var color = vec3f(0.0);
     var t = 1.0;
@@ -125,7 +126,7 @@ fn preintegrated_slabs(ray: Ray, span: vec2f, inside: vec2i) -> Seen {
             let seen = next_seen(walk, k + 1, last);
             has_leapt = is_empty && seen > k + 1;
             k = select(k, seen - 1, has_leapt);
-            // Material behind a gap is shaded by itself.
+            // Material behind a gap is shaded separately.
             let is_whole = steps >= select(LAYER_STEPS, LAYER_STEPS - 1, layer.last_depth < SOFT);
             if (is_whole || layer.left < eye.dark || k >= last || (is_empty && layer.share > 0.0)) {
                 break;

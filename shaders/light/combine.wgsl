@@ -1,5 +1,5 @@
-// All lights that material attenuates in one volume of colours (P §4): shading is done here, once for
-// every voxel, and the picture only looks up diffuse light. One thread per voxel.
+// Combined light: all shadowed lights in one volume of colours (P §4). Shading is done here, once for every voxel,
+// and the eye pass only looks up diffuse light. One thread per voxel.
 #import "density/volume.wgsl"
 #import "shading/shade.wgsl"
 #import "shading/looked_up_light.wgsl"
@@ -8,9 +8,9 @@
 
 struct Combine {
     dims: vec3u,
-    // Bricks listed for this dispatch.
+    // Number of bricks listed for this dispatch.
     bricks: u32,
-    // Data voxels per voxel of the light volumes.
+    // Number of data voxels per voxel of the light volumes, along an axis.
     voxel_step: f32,
     pad0: f32,
     pad1: f32,

@@ -1,4 +1,4 @@
-// A light volume filled by a ray from every voxel to the light (P §3.4, eq. 8): one thread per voxel.
+// Ray casting of a light volume: a ray from every voxel to the light (P §3.4, eq. 8), one thread per voxel.
 #import "density/table.wgsl"
 #import "shading/shadow_ray.wgsl"
 #import "shading/lights.wgsl"
@@ -9,16 +9,16 @@ struct Raycast {
     light: Light,
     space: Space,
     dims: vec3u,
-    // Bricks listed for this dispatch.
+    // Number of bricks listed for this dispatch.
     bricks: u32,
-    // Data voxels per voxel of the light volume.
+    // Number of data voxels per voxel of the light volume, along an axis.
     voxel_step: f32,
     // Distance between samples, in scene units.
     ray_step: f32,
     // Optical depth at which a ray ends.
     dark: f32,
     pad0: u32,
-    // What attenuates light.
+    // Region that attenuates light.
     shading_cut: Cut,
 }
 
@@ -29,7 +29,7 @@ var<private> raycast: Raycast;
 @group(0) @binding(3) var<storage, read> bricks: array<vec4u>;
 @group(0) @binding(4) var attenuation: texture_storage_3d<TARGET_FORMAT, write>;
 
-// All light is followed here, or one of its colours: what is met is one number.
+// White light or a single colour is followed, so extinction is a scalar.
 fn ray_extinction(frame: SheetFrame, ray: Ray, k: f32) -> Left {
     return Left(classified_extinction(slab_density(frame, ray, k)));
 }

@@ -1,4 +1,4 @@
-// What is shown of a picture, in 8 bits.
+// Display pass with 8 bits per channel.
 #import "output/tone_map.wgsl"
 
 @group(0) @binding(2) var shown: texture_storage_2d<rgba8unorm, write>;

@@ -1,13 +1,13 @@
-// Forward splatting (P §3.5, eq. 9): one thread per voxel adds density × footprint to the sheet of a
-// slab. Voxels come from lists; no texture is sampled.
+// Forward splatting (P §3.5, eq. 9): one thread per voxel adds density × footprint to the sheet of a slab. Voxels are
+// read from lists; no texture is sampled.
 #import "density/table.wgsl"
 #import "scatter/footprint.wgsl"
 #import "common/listed_bricks.wgsl"
 #import "scatter/voxels.wgsl"
 
-// Bricks of a slab: coordinates of ten bits each, and where the brick's voxels begin.
+// Bricks of a slab: packed coordinates of ten bits each, and the word where their voxels begin.
 @group(0) @binding(0) var<storage, read> bricks: array<vec2u>;
-// How many footprints were splatted.
+// Number of footprints splatted.
 @group(0) @binding(2) var<storage, read_write> splats: atomic<u32>;
 
 @compute @workgroup_size(8, 8, 4)
@@ -22,7 +22,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     let density = voxel_density(brick.y, voxel % BRICK_EDGE);
     let material = classify(density);
     let extinction = material.a / scatter.extinction_unit;
-    // What lies beyond the grid is no voxel.
+    // Bricks may extend beyond the grid, where there are no voxels.
     if (any(vec3f(voxel) >= scatter.dims) || (density == 0.0 && (SPLAT == SPLAT_DENSITY || extinction == 0.0))) {
         return;
     }

@@ -1,23 +1,25 @@
-// Short rays from samples towards lights (P eq. 8 for the first voxels of the way), in front of what light volumes know.
+// Near-field rays: short rays from samples towards lights (P eq. 8 for the first voxels), in front of the light
+// volumes.
 #import "density/lighting_density.wgsl"
 #import "density/table.wgsl"
 #import "density/cut.wgsl"
 #import "shading/shade.wgsl"
 
-// Steps of the near field (src/model/settings/shadows.rs), or none. Towards lights that have a size they are fewer.
+// Maximum number of near-field steps (src/model/settings/shadows.rs), or 0. Area lights take fewer.
 override NEAR_STEPS: u32 = 0u;
 
-// Light as a ray finds it close by, and as its volume knows it from there on: a volume blurs what lies within a voxel
-// or two, which is where a surface shades itself. The last step goes half a voxel of the light volume further, to where
-// the trilinear fetch sees little of what the ray has met already; no piece of the way is left out. Every sample looks
-// light up equally far away, so that light volumes hold no more than that takes (src/plan/geometry/ahead.rs).
+// Transmittance of a near-field ray, times the attenuation at its end: a light volume blurs what lies within a voxel
+// or two, which is where a surface shadows itself. The last step extends half a voxel of the light volume further,
+// where the trilinear fetch contains little of the material that the ray has already passed; no part of the path is
+// omitted. All samples look up light at the same distance, so that light volumes need no larger extent
+// (src/plan/geometry/ahead.rs).
 fn near_light(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> Left {
     let forward = to_index(eye.space, towards.direction);
     var way = 0.0;
     var depth = Left(0.0);
     var step = 0u;
     loop {
-        // Further steps are none: drivers unroll a loop whose end they know.
+        // Excess steps have length 0: drivers unroll a loop with a known end.
         let is_taken = select(0.0, 1.0, step < light.near_steps);
         let width =
             is_taken * near_width(step) * eye.near_edge + select(0.0, light.near_ahead, step + 1u == light.near_steps);
@@ -35,7 +37,7 @@ fn near_light(light: Light, volume: texture_3d<f32>, surface: Surface, towards: 
     return exp(-depth * light.extinction_scale) * looked_up(light, volume, end);
 }
 
-// What is left of a light that has a volume.
+// Attenuation of a light that has a volume.
 fn near_or_looked_up(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> Left {
 #if NEAR_STEPS
     return near_light(light, volume, surface, towards);

@@ -1,6 +1,6 @@
-// What the picture's samples look like: material, lights, and what of them arrives (P eq. 2–5).
+// Shading of samples: material, lights, and their attenuation (P eq. 2–5).
 //
-// The shader that imports this says what is left of a shadowed light, by attenuation_at().
+// The importing shader provides the attenuation of a shadowed light, as attenuation_at().
 #import "density/table.wgsl"
 #import "density/volume.wgsl"
 #import "shading/lights.wgsl"
@@ -15,31 +15,31 @@ struct Eye {
     frame: SheetFrame,
     shading: Shading,
     space: Space,
-    // The eye in scene space; w is 0 for an orthographic camera, whose eye is the direction to it.
+    // Eye in scene space; w is 0 for an orthographic camera, for which it is the direction to the eye.
     eye: vec4f,
-    // Rows of this dispatch start here.
+    // First row of this dispatch.
     first_row: u32,
-    // One beyond the last row of this dispatch.
+    // End of the rows of this dispatch, exclusive.
     end_row: u32,
-    // Of scattered sheets: bricks beyond an occupied one in which sums are complete.
+    // Distance from occupied bricks, in bricks, within which sums of scattered sheets are complete.
     dilation: i32,
-    // The ray ends when less than this is left of its transmittance.
+    // Minimum transmittance, at which the ray ends.
     dark: f32,
-    // Gradients from sheets are differences between so many pixels and slabs to either side.
+    // Distances of gradients from sheets, in pixels and slabs to either side.
     gradient_pixels: i32,
     gradient_slabs: i32,
-    // Runs of rows of tiles (sheets/tiles.wgsl).
+    // Number of interleaved runs of tile rows (sheets/tiles.wgsl).
     runs: u32,
-    // Smallest edge of a voxel, in scene units: the widths of the near field are in these.
+    // Shortest edge of a voxel, in scene units; unit of the near-field steps.
     near_edge: f32,
-    // Index space to texture coordinates of the volume into which lights have been combined.
+    // Scale from index space to texture coordinates of the combined light volume.
     combined_lookup: vec3f,
     pad0: f32,
-    // What is seen.
+    // Region that is visible.
     seen: Cut,
-    // The same within the grid: where solids end.
+    // Region that is visible, limited to the grid: the faces of solids.
     faces: Cut,
-    // What attenuates light.
+    // Region that attenuates light.
     shading_cut: Cut,
     sky: Sky,
     bounces: Bounces,
@@ -49,19 +49,19 @@ struct Eye {
 @group(0) @binding(0) var<uniform> bound_eye: Eye;
 var<private> eye: Eye;
 
-// Lights that are on; those with an attenuation volume come first.
+// Number of lights that are on; those with an attenuation volume come first.
 override LIGHTS: u32 = 1u;
-// How many of them have one, or would have.
+// Number of lights that cast shadows.
 override SHADOWED: u32 = 1u;
-// The diffuse light of those that have one is in the first volume, as colours (P §4).
+// Set if the first volume holds the diffuse light of all shadowed lights, as colours (P §4).
 override COMBINED: bool = false;
 
-// Where the light of a sample is looked up: the bias nearer to the source.
+// Point where a sample's light is looked up: offset towards the light by the bias.
 fn biased(surface: Surface, towards: Towards) -> vec3f {
     return surface.point + to_index(eye.space, towards.direction) * eye.shading.bias;
 }
 
-// A light as the side of a surface sees it to which opacity falls.
+// Light above the horizon of the side of a surface to which opacity falls.
 fn seen_by(light: Light, surface: Surface) -> Risen {
     let towards = to_light(light, surface.position);
     if (ONE_SIDED) {
@@ -72,7 +72,7 @@ fn seen_by(light: Light, surface: Surface) -> Risen {
     return Risen(towards, facing, facing, 1.0);
 }
 
-// What its light volume says of a light at an index-space point.
+// Attenuation of a light at an index-space point, from its volume.
 fn looked_up(light: Light, volume: texture_3d<f32>, p: vec3f) -> Left {
     return stored_left(textureSampleLevel(volume, clamped, (p + 0.5) * light.lookup, 0.0));
 }
@@ -81,7 +81,7 @@ fn lit_by(index: u32, volume: texture_3d<f32>, surface: Surface) -> Lit {
     let light = eye.lights[index];
     let risen = seen_by(light, surface);
     let share = received(eye.shading, attenuation_at(light, volume, surface, risen.towards));
-    // Without shadows nothing keeps away what has not risen.
+    // With weaker shadows, light below the horizon counts in part.
     return reflect_light(eye.shading, light, surface, risen, share, 1.0 - eye.shading.strength);
 }
 
@@ -89,18 +89,19 @@ fn add(a: Lit, b: Lit) -> Lit {
     return Lit(a.diffuse + b.diffuse, a.specular + b.specular);
 }
 
-// A sample of the volume.
+// Sample of the volume.
 struct Sampled {
-    // In index space.
+    // Position in index space.
     point: vec3f,
     // Gradient in scene space.
     slope: vec3f,
     density: f32,
-    // Of the pyramid, as stretched as its kernel.
+    // Pyramid level for the stretch of the sample's kernel.
     level: f32,
 }
 
-// To which side of a surface opacity falls; of voxels that were classified, whose densities are opacities, away from them.
+// Side of a surface to which opacity falls; for pre-classified voxels, whose densities are opacities, always
+// outwards.
 fn side_at(density: f32) -> f32 {
 #if PRECLASSIFY
     return 1.0;
@@ -109,16 +110,17 @@ fn side_at(density: f32) -> f32 {
 #endif
 }
 
-// The gradient, in scene space, that faces of what is seen have of their own, the grid's included: into the solid that
-// ends there, in which opacity rises, as density does or against it. `rising` is how presence rises there.
+// Gradient, in scene space, of the faces of the visible region, including those of the grid: into the solid, in the
+// direction in which density rises or, if opacity falls with density, against it. `rising` is the gradient of
+// presence.
 fn face_slope(p: vec3f, level: f32, density: f32, rising: vec3f) -> vec3f {
     let turned = select(1.0, -1.0, ONE_SIDED && side_at(density) < 0.0);
 #if PRECLASSIFY
-    // What voxels mean ends with them by itself.
+    // Pre-classified materials end with their voxels.
     let faces = face_gradient(eye.seen, p, level);
 #else
 #if MISSING
-    // Beyond the grid, too, nothing is there.
+    // Presence includes the faces of the grid.
     let faces = face_gradient(eye.seen, p, level) + rising;
 #else
     let faces = face_gradient(eye.faces, p, level);
@@ -146,7 +148,7 @@ fn surface_of(found: Sampled) -> Surface {
     );
 }
 
-// The light of all lights that material attenuates.
+// Light of all lights that cast shadows.
 fn lit_through_material(surface: Surface) -> Lit {
     var lit = Lit(vec3f(0.0), vec3f(0.0));
 #if SHADOWED > 0
@@ -176,13 +178,14 @@ fn lit_through_material(surface: Surface) -> Lit {
     return lit;
 }
 
-// Some way in front of a surface, on the side from which light comes; amid matter, the sample itself. In index space.
+// Point at a distance in front of a surface, on its lit side; the sample itself within homogeneous material. In index
+// space.
 fn in_front(surface: Surface, way: f32) -> vec3f {
     let turned = select(1.0, -1.0, ONE_SIDED && surface.side < 0.0);
     return surface.point + to_index(eye.space, surface.normal) * (turned * surface.surfaceness * way);
 }
 
-// The light of the sky on a sample, as a share of its colour.
+// Light of the sky at a sample, to be multiplied by its colour.
 fn lit_by_sky(surface: Surface) -> vec3f {
 #if SKY
     return reflect_sky(eye.sky, surface, in_front(surface, eye.sky.ahead), eye.shading.strength);
@@ -195,7 +198,7 @@ fn lit_by_sky(surface: Surface) -> vec3f {
 @group(2) @binding(9) var bounced_texture: texture_3d<f32>;
 #endif
 
-// The light on a sample that material has scattered before, as a share of its colour.
+// Scattered light at a sample, to be multiplied by its colour.
 fn lit_by_bounces(surface: Surface) -> vec3f {
 #if BOUNCES
     let bounces = eye.bounces;
@@ -206,7 +209,7 @@ fn lit_by_bounces(surface: Surface) -> vec3f {
 #endif
 }
 
-// The light from a sample.
+// Light from a sample towards the eye.
 fn shade(found: Sampled, material: vec3f) -> vec3f {
     let s = eye.shading;
     let p = found.point;
@@ -218,7 +221,7 @@ fn shade(found: Sampled, material: vec3f) -> vec3f {
         lit = lit_through_material(surface);
     }
     for (var i = SHADOWED; i < LIGHTS; i += 1u) {
-        // Not from the copy: an index that varies would keep that as an array in memory.
+        // Indexed in the uniform: copying an array that is indexed dynamically would keep it in memory.
         let light = bound_eye.lights[i];
         let risen = seen_by(light, surface);
         let share = hood_share(light, risen.towards.direction);
@@ -228,10 +231,10 @@ fn shade(found: Sampled, material: vec3f) -> vec3f {
     return material * (s.emission + s.ambient + around + s.diffuse * lit.diffuse) + s.specular * lit.specular;
 }
 
-// The gradient in scene space from differences of the sheets: per pixel to the right, per pixel down
-// and per unit of depth. With the columns of J what a step of each kind moves the sample, it is J⁻ᵀ of
-// the differences (the paper's [16], for any projection and voxel shape). Sheets lie across the line of
-// sight, or across an axis of index space if it is not zero.
+// Gradient in scene space from differences of sheets: per pixel to the right, per pixel down and per unit of depth.
+// If the columns of J are the displacements of the sample by these steps, it is J⁻ᵀ times the differences (the
+// paper's [16], for any projection and voxel shape). Sheets lie across the line of sight, or across `axis` in index
+// space if that is not zero.
 fn gradient_of_sheets(pixel: vec2f, depth: f32, differences: vec3f, axis: vec3f) -> vec3f {
     let frame = eye.frame;
     let forward = ray_of(frame, pixel).direction;

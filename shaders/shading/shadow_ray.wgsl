@@ -1,16 +1,15 @@
-// A ray from a point of the volume towards a light (P eq. 7 and 8). The shader that imports this
-// says what attenuates light, by ray_extinction(frame, ray, k) and light_distance(cell).
+// Ray from a point of the volume towards a light (P eq. 7 and 8). The importing shader provides extinction and cell
+// distances, as ray_extinction(frame, ray, k) and light_distance(cell).
 #import "common/left.wgsl"
 #import "density/cells.wgsl"
 #import "density/cut.wgsl"
 
-// Whether the first sample lies a whole step from the point, as P eq. 7 and 8 have it, or in the
-// middle of the first step.
+// Places the first sample a whole step from the point, as P eq. 7 and 8 have it, instead of in the middle of the
+// first step.
 override DEPOSIT_FRONT: bool = false;
 
-// The transmittance between the point p and what lies `reach` scene units further along `direction`,
-// a unit vector of the scene given in index space. Extinctions are multiplied by `scale`; beyond the
-// optical depth `dark` nothing is added, and nothing outside of `cut`.
+// Transmittance from the point p to `reach` scene units along `direction`, a unit vector of the scene given in index
+// space. Extinction is multiplied by `scale` and limited to `cut`; the ray ends at the optical depth `dark`.
 fn shadow_ray(
     p: vec3f,
     direction: vec3f,
@@ -20,12 +19,12 @@ fn shadow_ray(
     dark: f32,
     cut: Cut,
 ) -> Left {
-    // A stack of sheets of its own: the ray's points are the middles of its slabs.
+    // The ray as a stack of sheets: its sample points are the middles of the slabs.
     var frame: SheetFrame;
     frame.first_depth = select(0.0, 0.5 * ray_step, DEPOSIT_FRONT);
     frame.slab = ray_step;
     frame.voxel_edge = 1.0;
-    // Whole slabs; what is left of the way after them is a shorter one.
+    // Whole slabs; the rest of the distance is a shorter one.
     frame.slab_count = u32(clamp((reach - frame.first_depth) / ray_step, 0.0, 65535.0));
     let ray = Ray(p, direction, 1.0);
     let span = span_within(cut, ray);
@@ -34,7 +33,7 @@ fn shadow_ray(
     var k = inside.x;
     var depth = Left(0.0);
     loop {
-        // A loop of its own, as in the eye pass.
+        // A loop of its own for empty-space skipping, as in the eye pass.
         loop {
             if (k > inside.y) {
                 break;

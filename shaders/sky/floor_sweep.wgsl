@@ -1,5 +1,5 @@
-// The march of a sky's light to a floor: one thread per ray follows it to the slice in which it meets the floor, and keeps
-// what is left of it there, a texel for each ray. Before them lies a row and a column of rays that pass the grid by.
+// Sweep of the sky's light down to the floor: one thread per ray follows it to the slice in which it meets the floor,
+// and stores the transmittance there, one texel per ray. A row and a column of rays that miss the grid precede them.
 #import "sky/near.wgsl"
 #import "sky/floor_place.wgsl"
 #import "common/slab_mean.wgsl"
@@ -8,7 +8,7 @@
 @group(0) @binding(2) var clamped: sampler;
 @group(0) @binding(3) var left: texture_storage_3d<STORAGE_FORMAT, write>;
 
-// The slice in which a ray meets the floor, between slices, before the first or behind the last.
+// Slice in which a ray meets the floor; fractional, and possibly before the first or behind the last.
 fn slice_of_floor(rays: SkyRays, start: vec2f, last: f32) -> f32 {
     let begin = turned_from(rays, vec3f(select(last, 0.0, rays.rises == 1u), start));
     let step = turned_from(rays, vec3f(select(-1.0, 1.0, rays.rises == 1u), rays.drift));
@@ -19,7 +19,7 @@ fn slice_of_floor(rays: SkyRays, start: vec2f, last: f32) -> f32 {
 fn main(@builtin(global_invocation_id) id: vec3u) {
     sweep = bound_sweep;
     map = bound_map;
-    // Not from the copy: an index that varies would keep that as an array in memory.
+    // Indexed in the uniform: copying an array that is indexed dynamically would keep it in memory.
     let rays = bound_sweep.rays[id.z];
     if (any(id.xy > rays.size)) {
         return;

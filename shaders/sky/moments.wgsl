@@ -1,19 +1,20 @@
-// How open to the sky each listed block is: its mean transmittance over directions, V₀, and the mean of transmittance times
-// direction, V₁, gathered from the rays of a batch around its middle, and added to those of the batches before.
+// Moments of sky visibility at listed blocks: mean transmittance over directions, V₀, and mean of transmittance times
+// direction, V₁, gathered from the rays of a batch around each block's centre and added to the sums of earlier
+// batches.
 #import "sky/rays.wgsl"
 #import "common/listed_cells.wgsl"
 
 @group(0) @binding(1) var sheets: texture_3d<f32>;
 @group(0) @binding(2) var clamped: sampler;
-// A sum for each of the listed blocks.
+// Sums of the moments, one for each listed block.
 @group(0) @binding(3) var<storage, read_write> sums: array<vec4f>;
 // V₁ in rgb, V₀ in a.
 @group(0) @binding(4) var moments: texture_storage_3d<rgba16float, write>;
 @group(0) @binding(5) var<storage, read> cells: array<u32>;
 
-// Rays of a batch. Not a number of the uniform's: drivers lay out a loop whose end they know.
+// Number of directions in a batch. A constant rather than a uniform, because drivers unroll loops with a known end.
 override DIRECTIONS: u32 = 4u;
-// Whether it is the last, and the mean is known.
+// Set for the last batch, which stores the mean.
 override IS_LAST: bool = true;
 
 @compute @workgroup_size(64)

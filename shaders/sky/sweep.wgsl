@@ -1,5 +1,5 @@
-// The march of a sky's light along parallel rays: one thread per ray walks slices of blocks, and stores for each the
-// transmittance that it deposits there, as the light pass does (sheets/march.wgsl).
+// Sweep of the sky's light along parallel rays: one thread per ray walks through slices of blocks, and stores the
+// transmittance that it deposits in each, like the light pass does (sheets/march.wgsl).
 #import "sky/rays.wgsl"
 #import "sky/near.wgsl"
 #import "common/slab_mean.wgsl"
@@ -11,7 +11,7 @@
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     sweep = bound_sweep;
-    // Not from the copy: an index that varies would keep that as an array in memory.
+    // Indexed in the uniform: copying an array that is indexed dynamically would keep it in memory.
     let rays = bound_sweep.rays[id.z];
     if (any(id.xy >= rays.size)) {
         return;

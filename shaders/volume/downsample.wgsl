@@ -1,4 +1,4 @@
-// The next level of the pyramid.
+// Downsampling of density to the next level of the pyramid.
 #import "volume/halved.wgsl"
 
 @group(0) @binding(2) var level: texture_storage_3d<STORAGE_FORMAT, write>;

@@ -1,4 +1,4 @@
-// The next level of classified voxels.
+// Downsampling of pre-classified voxels to the next level of their pyramid.
 #import "volume/halved.wgsl"
 
 @group(0) @binding(2) var level: texture_storage_3d<rgba16float, write>;

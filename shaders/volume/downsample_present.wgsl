@@ -1,4 +1,4 @@
-// The next level of the pyramid where voxels are missing: density, and the share of its kernel that is there.
+// Downsampling of density and presence to the next level of the pyramid, for volumes with missing voxels.
 #import "volume/halved.wgsl"
 
 @group(0) @binding(2) var level: texture_storage_3d<PAIR_FORMAT, write>;

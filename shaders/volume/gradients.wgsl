@@ -1,5 +1,5 @@
-// Gradients of a level of the pyramid at its texels, so that one fetch replaces six: differences between
-// neighbours and linear interpolation between texels may be taken in either order.
+// Gradients of a pyramid level at its texels, so that one fetch replaces twelve: differences between neighbours and
+// linear interpolation between texels commute.
 #import "volume/levels.wgsl"
 
 @group(0) @binding(0) var source: texture_3d<f32>;
@@ -9,7 +9,7 @@ fn value(texel: vec3i) -> f32 {
     return textureLoad(source, clamp(texel, vec3i(0), vec3i(textureDimensions(source)) - 1), 0).r;
 }
 
-// Change of the density per texel (density/gradient.wgsl).
+// Derivative of the density per texel (density/gradient.wgsl).
 fn slope_along(texel: vec3i, step: vec3i) -> f32 {
     let near = value(texel + step) - value(texel - step);
     let far = value(texel + 2 * step) - value(texel - 2 * step);

@@ -1,4 +1,4 @@
-// Level 0 of the pyramid.
+// Prefiltered density, level 0 of the pyramid.
 #import "volume/prefiltered.wgsl"
 
 @group(0) @binding(2) var level: texture_storage_3d<STORAGE_FORMAT, write>;

@@ -1,5 +1,5 @@
-// Level 0 of the pyramid where voxels are missing: the volume blurred (volume/prefilter.wgsl), and beside it the share of
-// that kernel which lies on voxels that are there, so that one fetch says both.
+// Prefiltered density and presence, level 0 of the pyramid of a volume with missing voxels: the blurred volume
+// (volume/prefilter.wgsl), and the fraction of the blur on existing voxels, both available in one fetch.
 #import "volume/prefiltered.wgsl"
 #import "density/stored_presence.wgsl"
 

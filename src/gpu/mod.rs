@@ -1,7 +1,7 @@
-//! The renderer: sheet-buffer splatting in gather form, on wgpu.
+//! The wgpu renderer: splatting with sheet buffers, computed in gather form.
 //!
-//! One folder per part of a picture, in the order in which they build on each other; one file per pass, with the
-//! same name as its shader. Knows nothing of the window.
+//! One folder per stage of the picture, in the order in which the stages depend on each other; one file per compute
+//! pass, named like its shader. Independent of the window.
 
 mod bounces;
 mod context;

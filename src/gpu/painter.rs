@@ -1,15 +1,15 @@
-//! Finished pictures in render passes of a program that the renderer is a part of, without a way through host memory.
+//! Drawing of finished pictures into a host program's render passes, without a copy through host memory.
 
 use crate::gpu::pipelines::shader::ShaderLibrary;
 use crate::gpu::{Context, GpuError, Renderer};
 
-/// Draws what a renderer shows into render passes with a colour target of one format, without depth and with one
-/// sample per pixel.
+/// Painter that draws a renderer's picture into render passes with a colour target of one format, without depth and
+/// with one sample per pixel.
 ///
-/// Texels arrive as [`Renderer::read_shown`] gives them, alpha included; nothing is blended. Targets of 8 bits get
-/// every byte, also when their format ends in `Srgb`; it is decoded first, because the GPU codes it again. Float
-/// targets get the same numbers, from 0 to 1, and 32-bit floats all bits of deeper pictures. With
-/// [`crate::model::Depth::Linear`] that is linear light, which needs a float target.
+/// Texels arrive as [`Renderer::read_shown`] returns them, alpha included; nothing is blended. Targets of 8 bits
+/// receive the exact bytes, even if their format ends in `Srgb`: the shader decodes them first, because the GPU
+/// encodes them again. Float targets receive the same numbers, from 0 to 1, and 32-bit floats all bits of deep
+/// pictures. With [`crate::model::Depth::Linear`] the values are linear light, which needs a float target.
 #[derive(Debug, Clone)]
 pub struct PicturePainter {
     device: wgpu::Device,
@@ -18,13 +18,13 @@ pub struct PicturePainter {
 }
 
 impl PicturePainter {
-    /// A painter for render passes on the device of a renderer, into targets of a format.
+    /// Creates a painter for the device of a renderer and targets of a format.
     ///
     /// # Errors
-    /// When the device cannot draw into that format.
+    /// Returns an error if the device cannot render into that format.
     pub fn new(context: &Context, target: wgpu::TextureFormat) -> Result<Self, GpuError> {
         let device = &context.device;
-        // It stores nothing: the formats do not matter.
+        // The shader writes no storage textures, so these formats are unused.
         let format = wgpu::TextureFormat::R16Float;
         let source = ShaderLibrary::source("output/painter.wgsl", format, format)?;
         let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
@@ -52,12 +52,12 @@ impl PicturePainter {
         }
     }
 
-    /// Records what the renderer shows over the viewport of a pass, which shows it texel by texel if it has the
-    /// picture's size, and the nearest texel of each pixel if not. The pass must be submitted before the renderer
+    /// Records the drawing of the renderer's picture over the viewport of a pass: texel by texel if the viewport has
+    /// the picture's size, else with the nearest texel of each pixel. The pass must be submitted before the renderer
     /// draws again.
     ///
     /// # Errors
-    /// When there is no picture.
+    /// Returns an error if there is no picture.
     pub fn paint(&self, renderer: &Renderer, pass: &mut wgpu::RenderPass<'_>) -> Result<(), GpuError> {
         let picture = renderer.shown_view()?;
         let bind_group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {

@@ -1,4 +1,4 @@
-//! The filling of a volume of light that has bounced.
+//! Filling of a volume of scattered light: its temporary textures and its steps.
 
 use glam::DVec3;
 
@@ -20,7 +20,7 @@ use crate::gpu::{GpuError, RenderOptions};
 use crate::model::{MAX_LIGHTS, Settings};
 use crate::plan::{BouncesKey, LitLights, OneColor, SweepFrame, boxes_around, sweep_directions};
 
-/// What of a picture bounced light is made from.
+/// Inputs from the picture for the filling: transfer tables, settings and lights.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Look<'a> {
     pub tables: &'a Tables,
@@ -28,22 +28,22 @@ pub(crate) struct Look<'a> {
     pub lit: &'a LitLights,
 }
 
-/// The filling of a volume of light that has bounced.
+/// Work to fill a volume of scattered light.
 #[derive(Debug)]
 pub(crate) struct BouncesBuild {
-    /// Rays in the directions of a bounce, and in those of the last.
+    /// Rays of the intermediate bounces, and those of the last bounce.
     batches: [Batches; 2],
-    /// Blocks along x, y and z.
+    /// Number of blocks along x, y and z.
     dims: [usize; 3],
-    /// Rays from a block to all lights.
+    /// Number of rays from a block to the points of all lights.
     rays: usize,
     bounces: u32,
-    /// Points that stand for a light that has a size.
+    /// Maximum number of points on an area light.
     points: u32,
     has_sky: bool,
-    /// That of all light, if there is one.
+    /// Common colour of all light, if there is one.
     one_color: Option<OneColor>,
-    /// Blocks in which something attenuates light.
+    /// Blocks in which something may attenuate light.
     met: ListedCells,
     /// Blocks that pictures look up.
     looked_up: ListedCells,
@@ -51,10 +51,10 @@ pub(crate) struct BouncesBuild {
 }
 
 impl BouncesBuild {
-    /// Lays out the filling of a volume.
+    /// Plans the filling of a volume, and allocates its temporary textures.
     ///
     /// # Errors
-    /// When memory is out.
+    /// Returns an error if memory is exhausted.
     pub(crate) fn new(
         gpu: Gpu<'_>,
         (tables, options): (&Tables, &RenderOptions),
@@ -77,7 +77,7 @@ impl BouncesBuild {
         let textures = Textures::new(gpu.context, volume, size, one_color.is_some())?;
         let rays = (lights * key.points() as usize).max(1);
         let met = blocks::met(tables, options, volume.dims, volume.divisor);
-        // What is seen of the last bounce may lie beside what light bounces off.
+        // Pictures also look up the last bounce beside the blocks that scatter light.
         let seen = met.with(&volume.filled);
         let [each, last] = frames;
         Ok(Self {
@@ -97,30 +97,31 @@ impl BouncesBuild {
         })
     }
 
-    /// Its pieces, in order.
+    /// Returns the steps of the filling, in order.
     pub(crate) fn steps(&self) -> Vec<BounceStep> {
         let slices = (self.dims[2], self.slices_at_once());
         steps(self.bounces, self.has_sky, slices, |followed| self.batches(followed).count())
     }
 
-    /// So many slices of blocks cast rays to lights at once that they take no more steps than a batch of directions.
+    /// Returns the number of slices of blocks that cast rays to lights in one step, so that it takes no longer than a
+    /// batch of directions.
     fn slices_at_once(&self) -> usize {
         let [x, y, z] = self.dims;
         (BATCH_BLOCKS / (x * y * self.rays * x.max(y).max(z))).max(1)
     }
 
-    /// Rays along which light is followed.
+    /// Returns the rays of a sweep.
     fn batches(&self, followed: Followed) -> &Batches {
         let [bounce, last] = &self.batches;
         if followed == Followed::Last { last } else { bounce }
     }
 
-    /// Bytes that only the filling needs.
+    /// Returns the size of the temporary resources, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         self.textures.bytes + self.met.bytes() + self.looked_up.bytes()
     }
 
-    /// Records a piece.
+    /// Records one step of the filling.
     pub(crate) fn record(
         &self,
         gpu: Gpu<'_>,
@@ -137,7 +138,8 @@ impl BouncesBuild {
             BounceStep::First { slice } => self.fill_first(gpu, look, volume, slice, encoder),
             BounceStep::Source { bounce } => {
                 let shared = self.shared(gpu, volume, Followed::Bounce);
-                // The last but one leaps, and every other before it: two bounces tell where to.
+                // Extrapolates after the second-last bounce, and after every other one before it, since the ratio
+                // takes two bounces.
                 let leaps = bounce > 1 && (self.bounces - 1 - bounce).is_multiple_of(2);
                 if leaps {
                     self.whole(gpu, &Only("bounces/ratio.wgsl"), &shared, volume, encoder)?;
@@ -153,22 +155,23 @@ impl BouncesBuild {
         }
     }
 
-    /// What is followed of some light: its amount, where all has one colour.
+    /// Returns the light in the form that sweeps follow: the amount in every component, if all light has one colour.
     fn followed_of(&self, light: DVec3) -> DVec3 {
         self.one_color.map_or(light, |one| DVec3::splat(one.amount(light)))
     }
 
-    /// The blocks that get the light that is followed.
+    /// Returns the blocks that gather the swept light.
     fn reached(&self, followed: Followed) -> &ListedCells {
         if followed == Followed::Last { &self.looked_up } else { &self.met }
     }
 
-    /// A shader that reads what is followed.
+    /// Creates the variant of a shader that depends only on the number of colours.
     fn variant(&self, shader: &'static str) -> ColorVariant {
         ColorVariant { shader, one_color: self.one_color.is_some() }
     }
 
-    /// What passes over blocks share: those in which light is scattered, or for the last bounce all of them.
+    /// Builds the uniform shared by passes over blocks: limited to blocks that scatter light, but for the last bounce
+    /// to none.
     fn shared(&self, gpu: Gpu<'_>, volume: &BouncesVolume, followed: Followed) -> wgpu::Buffer {
         let uniform = uniforms::Bounce {
             dims: volume.dims.map(|n| n as u32),
@@ -208,7 +211,8 @@ impl BouncesBuild {
         pass.record(gpu, &entries, encoder)
     }
 
-    /// Follows light in the directions of a batch, that of blocks or of a sky, and adds what arrives to what came before.
+    /// Sweeps light in the directions of a batch (emitted by blocks, or arriving from the sky), and adds it to the
+    /// sums of the blocks.
     fn fill_batch(
         &self,
         gpu: Gpu<'_>,
@@ -268,7 +272,7 @@ impl BouncesBuild {
         let mut lights = [bytemuck::Zeroable::zeroed(); MAX_LIGHTS];
         for (index, (slot, lit)) in lights.iter_mut().zip(lit.all()).enumerate() {
             let whole = pack_light(&lit.light, None, scene, settings);
-            // Only shadows show how large a light is.
+            // Only shadows depend on the size of a light, so lights without shadows take one point.
             let points = if index < shadowed { self.points } else { 1 };
             let color = self.followed_of(DVec3::from(whole.color.map(f64::from))).as_vec3().into();
             *slot = uniforms::Light { points: whole.points.min(points), color, ..whole };
@@ -306,7 +310,7 @@ impl BouncesBuild {
         Ok(())
     }
 
-    /// Records a pass over blocks that reads what was gathered.
+    /// Records a pass over all blocks that reads the gathered sums.
     fn whole(
         &self,
         gpu: Gpu<'_>,
@@ -351,7 +355,7 @@ fn groups_of(volume: &BouncesVolume) -> [u32; 3] {
     volume.dims.map(|n| (n as u32).div_ceil(4))
 }
 
-/// What tells the first source from those of bounces.
+/// Pipeline variant of the pass that computes the emission of blocks for the next bounce.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct SourceVariant {
     has_bounced: bool,

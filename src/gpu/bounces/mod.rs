@@ -1,9 +1,8 @@
-//! Light that bounces: what material scatters lights what is around it.
+//! Multiple scattering: light that is scattered by the material and illuminates other parts of it.
 //!
-//! Blocks of voxels get a mean extinction and what of it scatters light, for each colour. From what unscattered light finds
-//! there they give off light, which is followed in many directions through them, as a sky's is, and gathered; what has been
-//! gathered makes them give off more, bounce by bounce. What infinitely many would bring is told from two, where there
-//! are three or more.
+//! Extinction and scattering are averaged over blocks of voxels, for each colour. Blocks scatter the direct light;
+//! that light is swept through the blocks in many directions, like a sky's, and gathered, bounce by bounce. With
+//! three or more bounces, the rest of the series is extrapolated geometrically from two of them.
 
 pub(super) mod build;
 pub(super) mod steps;

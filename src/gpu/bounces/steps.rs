@@ -1,33 +1,33 @@
-//! The pieces of a filling, in order.
+//! Steps of filling a volume of scattered light, in order.
 
-/// A piece of the filling.
+/// Step of filling a volume of scattered light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum BounceStep {
-    /// What light meets.
+    /// Computes extinction and scattering of the blocks.
     Blocks,
-    /// A batch of directions in which light is followed, and whose.
+    /// Sweeps a batch of directions, given by its index.
     Batch(Followed, usize),
-    /// What unscattered light makes blocks give off, from a slice of them on.
+    /// Computes the light that blocks scatter directly from the lights and the sky, for slices from `slice` on.
     First { slice: usize },
-    /// What so many bounces make them give off for the next.
+    /// Computes the light that blocks scatter after this number of bounces.
     Source { bounce: u32 },
-    /// What all bounces have brought.
+    /// Stores the result: the light that arrives with the last bounce.
     Outcome,
 }
 
-/// Whose light is followed.
+/// Light that a sweep follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Followed {
-    /// A sky's.
+    /// Light that arrives from the sky.
     Sky,
-    /// What blocks give off, for what it makes them give off in turn.
+    /// Light scattered by blocks, gathered as the source of the next bounce.
     Bounce,
-    /// The same for the last time, in more directions: what is seen.
+    /// Light scattered by blocks for the last time, in more directions: the result.
     Last,
 }
 
-/// The pieces of a filling with so many bounces, of so many slices of blocks of which some cast rays to lights at once; light is
-/// followed in so many batches.
+/// Returns the steps for a number of bounces. `slices` is the number of slices of blocks, of which `at_once` cast
+/// rays to lights in one step; `batches` gives the number of batches of a sweep.
 pub(super) fn steps(
     bounces: u32,
     has_sky: bool,

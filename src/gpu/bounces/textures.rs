@@ -1,4 +1,4 @@
-//! What only the filling of a volume of bounced light needs.
+//! Temporary textures and buffers for filling a volume of scattered light.
 
 use super::volume::BouncesVolume;
 use crate::gpu::context::pair_format;
@@ -7,44 +7,44 @@ use crate::gpu::sky::volume::SUM_BYTES;
 use crate::gpu::volume::texture_3d;
 use crate::gpu::{Context, GpuError};
 
-/// What only the filling needs.
+/// Temporary textures and buffers of the filling.
 #[derive(Debug)]
 pub(super) struct Textures {
-    /// What blocks give off, and their optical depth, with one of nothing around the grid.
+    /// Emission of the blocks and their optical depth, with a border of empty blocks around the grid.
     pub medium: wgpu::TextureView,
-    /// The format of that.
+    /// Format of the medium texture.
     pub medium_format: wgpu::TextureFormat,
-    /// The light along rays.
+    /// Light along the rays of a sweep.
     pub sheets: RaySheets,
-    /// What blocks scatter, and their optical depth.
+    /// Scattering of the blocks for each colour, and their optical depth.
     pub scattering: wgpu::Buffer,
-    /// What they give off of unscattered light.
+    /// Light that blocks scatter directly from the lights and the sky.
     pub first: wgpu::Buffer,
-    /// What a bounce brings them.
+    /// Sums of the light that a bounce brings to blocks.
     pub sums: wgpu::Buffer,
-    /// What the bounce before had brought.
+    /// Light that the previous bounce brought.
     pub last: wgpu::Buffer,
-    /// How much more that was than the one before that.
+    /// Increase of the previous bounce's light over the one before it.
     pub change: wgpu::Buffer,
-    /// What a bounce brings of what the last did.
+    /// Ratio of successive increases, for the extrapolation.
     pub ratio: wgpu::Buffer,
     pub bytes: u64,
 }
 
-/// The format of three colours, with or without an extinction.
+/// Format of three colours, with or without extinction in alpha.
 const COLORS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 impl Textures {
-    /// The format of sheets of light that has one colour all through, or of three colours.
+    /// Returns the format of sheets, for light of one colour or of three.
     pub(super) fn sheet_format(context: &Context, one_color: bool) -> wgpu::TextureFormat {
         if one_color { context.storage_format } else { COLORS }
     }
 
-    /// Room for the filling of a volume, with sheets of so many columns, rows and layers; of light that has one colour all
-    /// through, or of three colours.
+    /// Allocates the resources for filling a volume, with sheets of `sheet_size` columns, rows and layers, for light
+    /// of one colour or of three.
     ///
     /// # Errors
-    /// When memory is out.
+    /// Returns an error if memory is exhausted.
     pub(super) fn new(
         context: &Context,
         volume: &BouncesVolume,

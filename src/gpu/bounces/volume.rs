@@ -1,4 +1,4 @@
-//! The volume of light that has bounced.
+//! Volume of scattered light: mean radiance in blocks of voxels.
 
 use std::sync::Arc;
 
@@ -7,31 +7,31 @@ use crate::gpu::volume::texture_3d;
 use crate::gpu::{Context, GpuError};
 use crate::plan::CellSet;
 
-/// Most texels that the rays of one direction may take: 256 MiB of sheets of colours.
+/// Maximum number of texels for the rays of one direction: 256 MiB of sheets with three colours.
 pub(crate) const MOST_TEXELS: u64 = 1 << 25;
 
-/// Light that has been scattered before it reaches a block of voxels: its mean over all directions.
+/// Mean radiance over all directions of the light that was scattered before it reaches a block of voxels.
 #[derive(Debug)]
 pub(crate) struct BouncesVolume {
-    /// Blocks along x, y and z.
+    /// Number of blocks along x, y and z.
     pub dims: [usize; 3],
-    /// Voxels along the edge of a block.
+    /// Number of voxels along the edge of a block.
     pub divisor: usize,
-    /// Linear RGB.
+    /// View of the texture of linear RGB.
     pub view: wgpu::TextureView,
-    /// Cells (of blocks) that hold, or will hold, values.
+    /// Cells (of blocks) that hold values, or will when the volume is complete.
     pub filled: Arc<CellSet>,
-    /// How long it took.
+    /// Stopwatch for the filling of the volume.
     pub fill: FillTime,
-    /// Counts up with every use; the least recently used goes first.
+    /// Counter value at the last use; the least recently used volume is dropped first.
     pub last_used: u64,
 }
 
 impl BouncesVolume {
-    /// Makes the texture, of blocks of `divisor`³ voxels; nothing is filled yet.
+    /// Creates the texture, for blocks of `divisor`³ voxels; nothing is filled yet.
     ///
     /// # Errors
-    /// When memory is out.
+    /// Returns an error if memory is exhausted.
     pub(crate) fn new(
         context: &Context,
         grid: [usize; 3],
@@ -51,12 +51,12 @@ impl BouncesVolume {
         Ok(Self { dims, divisor, view, filled, fill: FillTime::default(), last_used: 0 })
     }
 
-    /// Index space to texture coordinates: (p + ½) × lookup.
+    /// Returns the scale from index space to texture coordinates: (p + ½) × lookup.
     pub(crate) fn lookup(&self) -> [f32; 3] {
         self.dims.map(|n| 1.0 / (n * self.divisor) as f32)
     }
 
-    /// Bytes of its texture.
+    /// Returns the size of the texture, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         8 * self.dims.iter().map(|&n| n as u64).product::<u64>()
     }

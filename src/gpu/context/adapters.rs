@@ -1,28 +1,28 @@
-//! Choice of the graphics adapter, and the reason why there is none.
+//! Selection of the graphics adapter, and the error message if there is none.
 
 use super::ADAPTER_HELP;
 use crate::data::plain;
 use crate::gpu::GpuError;
 
-/// Environment variable that names a part of the adapter's name.
+/// Environment variable that selects an adapter by a part of its name.
 const NAME: &str = "WGPU_ADAPTER_NAME";
 
-/// Environment variable that names the interfaces to drivers.
+/// Environment variable that selects the graphics APIs (`vulkan`, `metal`, `dx12`).
 const BACKEND: &str = "WGPU_BACKEND";
 
-/// Adapters that are listed at most: more than a machine has.
+/// Maximum number of adapters listed in an error message; more than any machine has.
 const MOST_LISTED: usize = 8;
 
-/// Bytes of a name from a driver or the environment that are told.
+/// Maximum length, in bytes, of an adapter's or variable's name in an error message.
 const LONGEST_NAME: usize = 80;
 
-/// The fastest adapter of those that the environment allows.
+/// Returns the fastest adapter among those that the environment variables allow.
 ///
 /// # Errors
-/// When there is none.
+/// Returns [`GpuError::NoAdapter`] if there is none.
 pub(super) fn fastest() -> Result<wgpu::Adapter, GpuError> {
     let asked = |variable: &str| std::env::var(variable).ok().filter(|value| !value.is_empty());
-    // Others may be compiled in by other packages, and cannot draw volumes.
+    // Other packages may compile in further backends (GL), which lack the features that volume rendering needs.
     let enabled = wgpu::Instance::enabled_backend_features() & wgpu::Backends::PRIMARY;
     let backends = wgpu::Backends::from_env().unwrap_or(enabled) & enabled;
     if backends.is_empty() {
@@ -47,7 +47,7 @@ pub(super) fn fastest() -> Result<wgpu::Adapter, GpuError> {
     adapters.into_iter().next().ok_or_else(|| none_of(&names, &wanted, asked(BACKEND).as_deref()))
 }
 
-/// Error for an environment that asks for interfaces which this program does not use.
+/// Builds the error for a `WGPU_BACKEND` that selects no graphics API of this program.
 fn no_interface(asked: &str, enabled: wgpu::Backends) -> GpuError {
     let names = [
         (wgpu::Backends::VULKAN, "vulkan"),
@@ -64,7 +64,7 @@ fn no_interface(asked: &str, enabled: wgpu::Backends) -> GpuError {
     GpuError::NoAdapter { why, help: "unset WGPU_BACKEND" }
 }
 
-/// Error for a machine with these adapters, none of which is called as the environment says.
+/// Builds the error for a machine on which no adapter's name contains `wanted`.
 fn none_of(names: &[String], wanted: &str, backend: Option<&str>) -> GpuError {
     if names.is_empty() {
         let through = backend.map_or_else(String::new, |backend| {

@@ -1,8 +1,8 @@
-//! Times on the GPU itself, where the adapter can tell them.
+//! GPU timestamps, where the adapter supports them.
 
 use crate::gpu::{Context, GpuError};
 
-/// Two time stamps and where they are read.
+/// Pair of GPU timestamps, with the buffers they are resolved to and read from.
 #[derive(Debug)]
 pub(crate) struct Clock {
     stamps: wgpu::QuerySet,
@@ -11,16 +11,16 @@ pub(crate) struct Clock {
     ms_per_tick: f64,
 }
 
-/// Bytes of two time stamps.
+/// Size of two timestamps, in bytes.
 const STAMPS: u64 = 16;
 
 impl Clock {
-    /// What the adapter must have.
+    /// Device features that timestamps require.
     pub(crate) const FEATURES: wgpu::Features =
         wgpu::Features::TIMESTAMP_QUERY.union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS);
 
-    /// A clock, if the device has one. Software drivers stamp the time at which they read a command, not that
-    /// at which its work is done.
+    /// Creates a clock, or returns `None` if the device has no timestamps. Software drivers take the timestamp when
+    /// they read the command, not when the work before it is finished; they get none either.
     pub(crate) fn new(context: &Context) -> Option<Self> {
         let device = &context.device;
         if context.is_software() || !device.features().contains(Self::FEATURES) {
@@ -49,19 +49,19 @@ impl Clock {
         })
     }
 
-    /// Notes the time before what is recorded next.
+    /// Records a timestamp in front of the commands to be timed.
     pub(crate) fn start(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.write_timestamp(&self.stamps, 0);
     }
 
-    /// Notes the time after what was recorded.
+    /// Records a timestamp behind the timed commands, and copies both timestamps into the buffer for reading.
     pub(crate) fn stop(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.write_timestamp(&self.stamps, 1);
         encoder.resolve_query_set(&self.stamps, 0..2, &self.resolved, 0);
         encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.read, 0, STAMPS);
     }
 
-    /// Milliseconds between the two; waits for them.
+    /// Waits for the timed commands and returns their duration in milliseconds.
     pub(crate) fn read_ms(&self, context: &Context) -> Result<f64, GpuError> {
         self.read.map_async(wgpu::MapMode::Read, .., |result| {
             if let Err(err) = result {

@@ -1,5 +1,5 @@
-//! What a device complains about, for the thread whose work it was: several share the device of the pictures, and what goes
-//! wrong for one is no matter of another.
+//! Device errors by thread. Several threads share the rendering device; an error caused by one thread's work is
+//! reported to that thread only.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -7,7 +7,8 @@ use std::thread::{self, ThreadId};
 
 use crate::gpu::GpuError;
 
-/// The first complaint about each thread's work, kept until that thread takes it; the loss of the device is everybody's.
+/// First error of each thread's work, kept until that thread takes it. The loss of the device is reported to every
+/// thread.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Complaints {
     kept: Arc<Mutex<Kept>>,
@@ -15,13 +16,14 @@ pub(super) struct Complaints {
 
 #[derive(Debug, Default)]
 struct Kept {
-    /// wgpu calls handlers on the thread whose call it complains about.
+    /// Errors by the thread that caused them: wgpu calls its handlers on the thread whose call failed.
     of_threads: HashMap<ThreadId, GpuError>,
     loss: Option<GpuError>,
 }
 
 impl Complaints {
-    /// Keeps a complaint about what this thread does, unless there is one already.
+    /// Stores an error of this thread, unless one is already stored; the loss of the device is stored for all
+    /// threads.
     pub(super) fn keep(&self, err: GpuError) {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         if matches!(err, GpuError::Lost(_)) {
@@ -31,7 +33,7 @@ impl Complaints {
         }
     }
 
-    /// What there is to say to this thread, once.
+    /// Takes the pending error of this thread, if any, so that it is reported once.
     pub(super) fn take(&self) -> Option<GpuError> {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let own = kept.of_threads.remove(&thread::current().id());

@@ -1,6 +1,6 @@
-//! Formats of textures that go with each other.
+//! Texture formats derived from the storage format.
 
-/// The format of two channels beside each other where single ones are stored in `storage`.
+/// Returns the two-channel format with the precision of the single-channel format `storage`.
 pub(crate) fn pair_format(storage: wgpu::TextureFormat) -> wgpu::TextureFormat {
     match storage {
         wgpu::TextureFormat::R32Float => wgpu::TextureFormat::Rg32Float,

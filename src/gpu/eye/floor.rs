@@ -1,4 +1,4 @@
-//! The floor pass: the light on the floor under the volume.
+//! Floor pass: the light on the floor under the volume, with the shadows that fall on it.
 
 use super::gather::EyePass;
 use crate::gpu::light::floor_shadow::FloorShadow;
@@ -16,11 +16,11 @@ use crate::math::SceneSpace;
 use crate::model::{Classification, Floor, MAX_LIGHTS, SceneLight, Settings, linear_from_srgb};
 use crate::plan::{FloorPlace, LitLights, ray_reach};
 
-/// Rows per submission are fewer than the eye's by so much: a ray to every light is about as long as the one
-/// from the eye.
+/// Factor by which a submission has fewer rows than in the eye pass: the ray to each light is about as long as the
+/// one from the eye.
 pub(crate) const COST: u32 = 2;
 
-/// What the floor pass works with besides the volume.
+/// Inputs of the floor pass besides the volume.
 #[derive(Clone, Copy)]
 pub(crate) struct FloorInputs<'a> {
     pub tables: &'a Tables,
@@ -28,13 +28,14 @@ pub(crate) struct FloorInputs<'a> {
     pub lit: &'a LitLights,
     pub settings: &'a Settings,
     pub options: &'a RenderOptions,
-    /// What it sees of the sky.
+    /// Sky visibility on the floor, if a map of it is used.
     pub sky: Option<&'a FloorMap>,
-    /// What gets there of each of the lights, in their order, where there is a map of that.
+    /// Transmittance maps of the lights, in their order; `None` for lights without one, whose rays are cast in the
+    /// pass.
     pub shadows: &'a [Option<&'a FloorShadow>],
 }
 
-/// Draws some rows of the floor, where the volume in `picture` does not cover it.
+/// Draws some rows of the floor, where it is not hidden by the volume in `picture`.
 pub(crate) fn draw(
     gpu: Gpu<'_>,
     FloorInputs { tables, eye, lit, settings, options, sky, shadows }: FloorInputs<'_>,
@@ -81,24 +82,25 @@ pub(crate) fn draw(
     Ok(())
 }
 
-/// What tells one pipeline of the floor from another: rays to lights are those from the voxels of a light volume.
+/// Pipeline variant of the floor pass. Rays to lights are marched like those from the voxels of a light volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct FloorVariant {
     rays: RaycastVariant,
     lights: LightCount,
     sky: SkyVariant,
-    /// What is left of each light's colours differs: of classified voxels, or of densities.
+    /// Classification used for coloured shadows (voxels classified first, or densities); `None` if shadows have no
+    /// colour.
     colored: Option<Classification>,
 }
 
 impl FloorVariant {
-    /// The floor under so many lights.
+    /// Creates the variant for this number of lights.
     pub(crate) fn of(settings: &Settings, lights: LightCount) -> Self {
         let colored = settings.has_colored_shadows().then_some(settings.sampling.classification);
         Self { rays: RaycastVariant::of(settings), lights, sky: SkyVariant::of(settings), colored }
     }
 
-    /// The floor under what ends there.
+    /// Returns the variant with the grid boundaries that rays may meet.
     fn ending(self, ends: Ends) -> Self {
         Self { rays: self.rays.ending(ends), ..self }
     }
@@ -119,7 +121,7 @@ impl Variant for FloorVariant {
     }
 }
 
-/// What the shader knows of the eye, the floor and the lights; no rows yet.
+/// Builds the uniform of eye, floor and lights, for all rows.
 fn uniform(
     eye: &EyePass,
     scene: &SceneSpace,
@@ -128,7 +130,7 @@ fn uniform(
 ) -> uniforms::Floor {
     let uniforms::Eye { frame, shading, space, shading_cut, .. } = eye.uniform();
     let Floor { on: _, height, radius, color, opacity, shadow_only } = settings.floor;
-    // How high a scene point is, which is an affine map from index space.
+    // Height of a point along the up axis, as an affine function of index coordinates.
     let up = settings.camera.up.direction();
     let [a, b, c] = scene.scene_from_index.matrix3.transpose().mul_vec3(up).as_vec3().to_array();
     let offset = scene.scene_from_index.translation.dot(up) as f32;
@@ -136,10 +138,10 @@ fn uniform(
     let [map_x, map_y] = FloorPlace::of(settings).map_or([[0.0; 4]; 2], FloorPlace::lookup);
     let mut packed = [bytemuck::Zeroable::zeroed(); MAX_LIGHTS];
     for (at, (slot, light)) in packed.iter_mut().zip(lit.all()).enumerate() {
-        // One point that stands for all of a light has no size, and there are no highlights on the floor.
+        // An area light approximated by a single point has no extent, and the floor has no highlights.
         let area = light.light.area.filter(|_| settings.shadows.area.samples > 1);
         *slot = pack_light(&SceneLight { area, ..light.light }, None, scene, settings);
-        // No rays to points where a map knows what they would find.
+        // Lights with a transmittance map need no rays to points on them.
         if shadows.get(at).is_some_and(Option::is_some) {
             slot.points = 0;
         }

@@ -1,4 +1,4 @@
-//! The eye pass: from density and attenuation to linear light.
+//! Eye pass: from density and attenuation volumes to the linear picture.
 
 use super::looked_up::{Around, LookedUp, light_bind_group, pack_bounces, pack_sky};
 use crate::gpu::light::combine::CombinedLight;
@@ -18,21 +18,21 @@ use crate::model::{Classification, Deposit, MAX_LIGHTS, Projection, Settings, Sh
 use crate::plan::picture_frame;
 use crate::plan::{PixelWindow, SheetFrame, ray_reach, sample_reach, scatter_reach_bricks};
 
-/// Everything that the eye pass of one picture needs besides the volume.
+/// Parameters of the eye pass of one picture, besides the volume.
 #[derive(Debug)]
 pub(crate) struct EyePass {
     frame: SheetFrame,
     uniform: uniforms::Eye,
-    /// Cells around a sample's own that it sees.
+    /// Reach of a sample's kernel, in cells around its own.
     dilation: i32,
-    /// What kernels reach of the pyramid.
+    /// Pyramid levels that kernels read.
     levels: Levels,
     variant: GatherVariant,
 }
 
 impl EyePass {
-    /// Sets up the pass under some lights, shadowed ones first; those that are combined are not among them; and under a
-    /// sky and bounced light, if any.
+    /// Prepares the pass for some lights (shadowed ones first, without those that are in the combined volume), and
+    /// for sky visibility and scattered light where there are volumes of them.
     pub(crate) fn new(
         scene: &SceneSpace,
         settings: &Settings,
@@ -81,7 +81,7 @@ impl EyePass {
             seen = seen.max(ray_reach(&settings.shadows, scene));
         }
         let dilation = if options.empty_space_skipping { i32::from(seen) } else { EVERYWHERE };
-        // Normals of classified voxels are those of the next level.
+        // Normals of classified voxels come from the next pyramid level.
         let is_classified = settings.sampling.classification == Classification::Pre;
         let levels = Levels::of(stretch_level > 0.0 || is_classified);
         let count = LightCount { all: lights.len() as u32, shadowed: shadowed as u32 };
@@ -90,38 +90,41 @@ impl EyePass {
         Self { frame, uniform, dilation, levels, variant }
     }
 
-    /// Slabs of the stack.
+    /// Returns the number of slabs in the stack.
     pub(crate) fn slab_count(&self) -> u32 {
         self.frame.slab_count
     }
 
-    /// The eye's rays and slabs.
+    /// Returns the geometry of the eye's rays and slabs.
     pub(crate) fn frame(&self) -> &SheetFrame {
         &self.frame
     }
 
-    /// What the shaders know about the eye, for the whole picture from scattered sheets.
+    /// Creates the uniform buffer of the whole picture, for the scattering engine; `gradient_slabs` is the distance,
+    /// in slabs, of the sheets that gradients are taken from.
     pub(crate) fn uniform_buffer(&self, context: &Context, gradient_slabs: u32) -> wgpu::Buffer {
         let uniform = uniforms::Eye { gradient_slabs: gradient_slabs as i32, ..self.uniform };
         context.buffer("Eye::uniform", &[uniform], wgpu::BufferUsages::UNIFORM)
     }
 
-    /// What shaders know about the eye and the lights.
+    /// Returns the uniform of eye and lights.
     pub(crate) fn uniform(&self) -> uniforms::Eye {
         self.uniform
     }
 
-    /// What shaders have to know that only shade.
+    /// Returns the shading part of the pipeline variant, for passes that only shade.
     pub(crate) fn shading_variant(&self) -> ShadingVariant {
         self.variant.shading
     }
 
-    /// How samples of scattered sheets get their normals and their light; whether from `gradients` is known by then.
+    /// Returns the sampling part of the pipeline variant, for the scattering engine; `has_gradients` tells if there
+    /// is a gradient texture.
     pub(crate) fn sampling_variant(&self, has_gradients: bool) -> SamplingVariant {
         SamplingVariant { has_gradients, ..self.variant.sampling }
     }
 
-    /// The texture of gradients, if there is one: of densities.
+    /// Returns the view of the gradient texture, if there is one; it holds gradients of density, so pre-classified
+    /// volumes have none.
     pub(crate) fn gradients<'a>(&self, gpu: Gpu<'a>) -> Option<&'a wgpu::TextureView> {
         if self.variant.shading.classification == Classification::Pre {
             return None;
@@ -129,12 +132,12 @@ impl EyePass {
         gpu.volume.gradients_views.as_ref().map(|views| self.levels.choose(views))
     }
 
-    /// Whether pixels are wider than voxels somewhere.
+    /// Returns true if pixels are wider than voxels somewhere in the view.
     pub(crate) fn is_stretched(&self) -> bool {
         self.variant.is_stretched
     }
 
-    /// Levels of the pyramid that kernels reach.
+    /// Returns the pyramid levels that kernels read.
     pub(crate) fn levels(&self) -> Levels {
         self.levels
     }
@@ -179,37 +182,37 @@ impl EyePass {
     }
 }
 
-/// What tells one pipeline of the eye pass from another.
+/// Pipeline variant of the eye pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct GatherVariant {
     reconstruction: Reconstruction,
-    /// Pixels are wider than voxels somewhere.
+    /// `true` if pixels are wider than voxels somewhere.
     is_stretched: bool,
     sampling: SamplingVariant,
-    /// Slabs are as thin as they need to be.
+    /// `true` if slabs are subdivided by need.
     by_need: bool,
-    /// Opacity is integrated between the densities at both ends of steps.
+    /// `true` if opacity is integrated between the densities at both ends of each step.
     preintegrated: bool,
-    /// Normals are those of the kernel.
+    /// `true` if normals are gradients of the kernel itself.
     kernel_gradients: bool,
     shading: ShadingVariant,
-    /// Samples cast rays to lights, which deposit so.
+    /// Deposit rule of the rays that samples cast to lights; `None` if light volumes are looked up.
     rays: Option<Deposit>,
 }
 
-/// How samples get their normals and their light.
+/// Sources of the normals and of the near-field light at samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct SamplingVariant {
-    /// Normals come from neighbouring sheets.
+    /// `true` if normals come from neighbouring sheets.
     sheet_gradients: bool,
-    /// Normals come from the texture of gradients.
+    /// `true` if normals come from the gradient texture.
     has_gradients: bool,
-    /// Steps of the rays nearby.
+    /// Number of steps of near-field rays; 0 without a near field.
     near_steps: u32,
 }
 
 impl SamplingVariant {
-    /// Its override constants.
+    /// Returns the values of its override constants and conditions.
     pub(crate) fn constants(self) -> Constants {
         vec![
             flag("SHEET_GRADIENTS", self.sheet_gradients),
@@ -220,8 +223,8 @@ impl SamplingVariant {
 }
 
 impl GatherVariant {
-    /// The eye pass under so many lights, with pixels that are wider than voxels somewhere or not, and without the
-    /// texture of gradients.
+    /// Creates the variant for this number of lights, without the gradient texture; `is_stretched` tells if pixels
+    /// are wider than voxels somewhere.
     pub(crate) fn of(settings: &Settings, lights: LightCount, is_stretched: bool) -> Self {
         let Settings { sampling, shadows, cuts, shading, .. } = settings;
         let casts_rays = shadows.algorithm == ShadowAlgorithm::Direct;
@@ -240,7 +243,7 @@ impl GatherVariant {
             shading: ShadingVariant {
                 lights,
                 is_combined: false,
-                // Rays to lights are the eye pass's own.
+                // Rays to lights are part of the eye pass, so the cut of the shading applies here, too.
                 is_cut: is_cut(cuts.seen()) || (casts_rays || near_steps > 0) && is_cut(cuts.shading()),
                 sides: shading.sides,
                 classification: sampling.classification,
@@ -253,19 +256,19 @@ impl GatherVariant {
         }
     }
 
-    /// The pass whose shadowed lights are combined in one volume, or are not.
+    /// Sets if the shadowed lights are in one combined volume.
     pub(crate) fn with_combined(mut self, is_combined: bool) -> Self {
         self.shading.is_combined = is_combined;
         self
     }
 
-    /// The pass over what ends there.
+    /// Sets the grid boundaries that samples may meet.
     pub(crate) fn ending(mut self, ends: Ends) -> Self {
         self.reconstruction = self.reconstruction.ending(ends);
         self
     }
 
-    /// The pass whose normals come from the texture of gradients, or do not.
+    /// Sets if normals come from the gradient texture.
     pub(crate) fn with_gradients(mut self, has_gradients: bool) -> Self {
         self.sampling.has_gradients = has_gradients;
         self
@@ -295,7 +298,7 @@ impl Variant for GatherVariant {
     }
 }
 
-/// How surfaces and shadows look, for the shaders.
+/// Builds the uniform of the shading and shadow parameters.
 pub(crate) fn pack_shading(
     settings: &Settings,
     scene: &SceneSpace,

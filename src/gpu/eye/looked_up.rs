@@ -1,4 +1,4 @@
-//! What passes that shade look up: light volumes, and light from all around.
+//! Light volumes that shading passes look up: lights, sky visibility and scattered light.
 
 use crate::gpu::bounces::volume::BouncesVolume;
 use crate::gpu::light::packed::light_entries;
@@ -9,24 +9,24 @@ use crate::gpu::volume::Gpu;
 use crate::math::SceneSpace;
 use crate::model::{SKY_AHEAD, Settings, SkyRadiance};
 
-/// Light that comes from all around, as far as there is a volume of it.
+/// Volumes of light from all directions; `None` where a picture has none.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Around<'a> {
-    /// How open to the sky places are.
+    /// Sky visibility, as moments over directions.
     pub sky: Option<&'a SkyVolume>,
-    /// Light that has bounced.
+    /// Light that was scattered at least once.
     pub bounces: Option<&'a BouncesVolume>,
 }
 
-/// What passes that shade look up.
+/// Light volumes that a shading pass looks up.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LookedUp<'a> {
-    /// The light volumes in the order of their lights, or the combined one.
+    /// Attenuation volumes in the order of their lights, or the combined one alone.
     pub attenuation: &'a [&'a wgpu::TextureView],
     pub around: Around<'a>,
 }
 
-/// The sky for the shaders; black where there is none.
+/// Builds the uniform of the sky: radiance as a linear function of direction; black if the sky is off.
 pub(crate) fn pack_sky(settings: &Settings, scene: &SceneSpace, volume: Option<&SkyVolume>) -> uniforms::Sky {
     let radiance = settings.sky.radiance(settings.camera.up);
     let color = |c: usize| {
@@ -42,7 +42,7 @@ pub(crate) fn pack_sky(settings: &Settings, scene: &SceneSpace, volume: Option<&
     }
 }
 
-/// Bounced light for the shaders; none where there is none.
+/// Builds the uniform of scattered light; without a volume of it, the look-up parameters are zero.
 pub(crate) fn pack_bounces(
     settings: &Settings,
     scene: &SceneSpace,
@@ -59,7 +59,7 @@ pub(crate) fn pack_bounces(
     }
 }
 
-/// Bind group 2 of the passes that shade what the eye sees.
+/// Creates bind group 2, the light volumes, of passes that shade samples for the eye.
 pub(crate) fn light_bind_group(
     gpu: Gpu<'_>,
     pipeline: &Pipeline,

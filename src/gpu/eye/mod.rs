@@ -1,4 +1,4 @@
-//! The eye pass: from density and light volumes to the linear picture, and the floor under it.
+//! Eye pass and floor pass: from density and light volumes to the linear picture.
 
 pub(super) mod floor;
 pub(super) mod gather;

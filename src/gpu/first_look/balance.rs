@@ -1,4 +1,4 @@
-//! How bright a picture is: *Balance*, which makes it as bright as without shadows, and the exposure of a first look.
+//! Brightness of a first look: the balance of lights, which compensates for shadows, and the exposure.
 
 use super::measures::{exposure_for, mean_luminance};
 use crate::data::Dataset;
@@ -6,27 +6,28 @@ use crate::gpu::{GpuError, RenderOptions, Renderer};
 use crate::model::auto::{self, Wishes};
 use crate::model::{Engine, SceneAxis, Settings, ShadowAlgorithm};
 
-/// Size of the pictures from which brightness is measured: means over some thousand pixels.
+/// Size of the pictures from which brightness is measured, in pixels: means over some thousand of them.
 pub(super) const MEASURED_SIZE: [u32; 2] = [160, 120];
 
-/// Balance stays within this factor: beyond it the settings are at fault, not the shadows.
+/// Range of the balance; results outside it are due to the settings, not to shadows.
 const BALANCE_RANGE: (f64, f64) = (0.1, 20.0);
 
-/// Settings for a volume that nobody has touched, but for what takes longer ([`super::finish_look`]).
+/// Returns the automatic settings of a volume, without the slower steps ([`super::finish_look`]).
 ///
-/// They are automatic, balanced so that shadows do not make the picture darker, and exposed. Uploads the volume and fills
-/// the light volumes on the way.
+/// Lights are balanced so that shadows do not darken the picture, and the picture is exposed. Uploads the volume and
+/// fills the light volumes.
 ///
 /// # Errors
-/// When the GPU cannot do it.
+/// Returns an error if the device fails or memory is exhausted.
 pub fn first_look(renderer: &mut Renderer, dataset: &Dataset) -> Result<Settings, GpuError> {
     first_look_upright(renderer, dataset, SceneAxis::default())
 }
 
-/// As [`first_look`], of a volume of which an axis of the scene points up, unless its file says what does.
+/// Returns the automatic settings like [`first_look`], with the axis `up` of the scene pointing up, unless the file
+/// of the volume gives an orientation.
 ///
 /// # Errors
-/// When the GPU cannot do it.
+/// Returns an error if the device fails or memory is exhausted.
 pub fn first_look_upright(
     renderer: &mut Renderer,
     dataset: &Dataset,
@@ -41,19 +42,19 @@ pub fn first_look_upright(
     Ok(settings)
 }
 
-/// The factor for the lights that makes the picture with shadows as bright as without.
+/// Returns the factor for lights that makes the picture with shadows as bright as without.
 ///
 /// # Errors
-/// When the GPU cannot do it.
+/// Returns an error if the device fails or memory is exhausted.
 pub fn balance(renderer: &mut Renderer, dataset: &Dataset, settings: &Settings) -> Result<f64, GpuError> {
     Ok(SmallPictures::of(renderer, dataset, settings)?.balance())
 }
 
-/// As [`balance`], by the quickest way to light and picture, whichever the settings go: how bright a picture is hardly
-/// depends on it.
+/// Returns the factor of [`balance`], measured with the fastest shadow algorithm and engine, on which brightness
+/// hardly depends.
 ///
 /// # Errors
-/// When the GPU cannot do it.
+/// Returns an error if the device fails or memory is exhausted.
 pub fn balance_quickly(
     renderer: &mut Renderer,
     dataset: &Dataset,
@@ -62,7 +63,7 @@ pub fn balance_quickly(
     balance(renderer, dataset, &with_quick_shadows(settings))
 }
 
-/// The settings with light volumes for shadows, and gathered sheets.
+/// Returns the settings with light volumes for shadows, and with the gathering engine.
 pub(super) fn with_quick_shadows(settings: &Settings) -> Settings {
     let mut measured = settings.clone();
     measured.sampling.engine = Engine::Gather;
@@ -72,18 +73,18 @@ pub(super) fn with_quick_shadows(settings: &Settings) -> Settings {
     measured
 }
 
-/// Linear light of three small pictures, which give its parts.
+/// Linear light of three small pictures, from which the parts of the light follow.
 pub(super) struct SmallPictures {
-    /// With shadows as they are without a balance.
+    /// Picture with shadows and a balance of 1.
     with: Vec<[f32; 4]>,
-    /// Without shadows.
+    /// Picture without shadows.
     pub(super) without: Vec<[f32; 4]>,
-    /// Without lights.
+    /// Picture without lights.
     pub(super) unlit: Vec<[f32; 4]>,
 }
 
 impl SmallPictures {
-    /// Of a look of a volume.
+    /// Draws the three pictures of a volume with these settings.
     pub(super) fn of(
         renderer: &mut Renderer,
         dataset: &Dataset,
@@ -91,13 +92,13 @@ impl SmallPictures {
     ) -> Result<Self, GpuError> {
         let mut dark = settings.clone();
         (dark.shading.diffuse, dark.shading.specular) = (0.0, 0.0);
-        // Nor does their light bounce.
+        // Lights without colour do not contribute scattered light, either.
         dark.lights.iter_mut().for_each(|light| light.color = [0.0; 3]);
         let unlit = small_picture(renderer, dataset, &dark)?;
         Self::before(renderer, dataset, settings, unlit)
     }
 
-    /// Of a look of a volume of which it is known what it is like without lights.
+    /// Draws the pictures with and without shadows; `unlit` is the known picture without lights.
     pub(super) fn before(
         renderer: &mut Renderer,
         dataset: &Dataset,
@@ -112,8 +113,9 @@ impl SmallPictures {
         Ok(Self { with, without, unlit })
     }
 
-    /// The factor for the lights that makes the first as bright as the second. Mean linear luminance over what is seen
-    /// is `ambient + factor · direct`; the plain ratio of the two would fall short by the ambient share.
+    /// Returns the factor for lights that makes the picture with shadows as bright as without. Mean linear luminance
+    /// over visible pixels is `ambient + factor · direct`; the plain ratio of both would be too small by the ambient
+    /// share.
     pub(super) fn balance(&self) -> f64 {
         let [with, without, unlit] =
             [&self.with, &self.without, &self.unlit].map(|light| mean_luminance(light));
@@ -121,7 +123,7 @@ impl SmallPictures {
         if factor.is_finite() { factor.clamp(BALANCE_RANGE.0, BALANCE_RANGE.1) } else { 1.0 }
     }
 
-    /// The picture with shadows and a balance.
+    /// Returns the picture with shadows and a balance.
     pub(super) fn balanced(&self, balance: f64) -> Vec<[f32; 4]> {
         let factor = balance as f32;
         let texels = self.with.iter().zip(&self.unlit);
@@ -135,13 +137,13 @@ impl SmallPictures {
     }
 }
 
-/// The look without shadows; by the pipelines of the look itself, if that is so of them: each takes about a second to
-/// compile on software adapters, and nothing else needs it.
+/// Returns the settings without shadows, with the same pipelines where possible: each takes about a second to compile
+/// on software adapters, and nothing else needs it.
 fn without_shadows(settings: &Settings) -> Settings {
     let mut unshadowed = settings.clone();
-    // What bounces comes out of shadows.
+    // Scattered light depends on shadows.
     unshadowed.scattering.bounces = 0;
-    // Light volumes hold hoods, too.
+    // Light volumes also contain the cones of lights.
     if settings.lights.iter().any(|light| light.hood.on) {
         unshadowed.shadows.algorithm = ShadowAlgorithm::Off;
     } else {
@@ -150,8 +152,8 @@ fn without_shadows(settings: &Settings) -> Settings {
     unshadowed
 }
 
-/// Linear light of a small picture, of which the floor is no part. As a preview, it makes do with the light volumes of
-/// larger pictures.
+/// Returns the linear light of a small picture without the floor. Drawn as a preview, so that it can reuse the light
+/// volumes of larger pictures.
 fn small_picture(
     renderer: &mut Renderer,
     dataset: &Dataset,

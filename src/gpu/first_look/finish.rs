@@ -1,4 +1,4 @@
-//! The end of a first look, for those who wait for it: the light that was sought, and the brightness that goes with it.
+//! Completion of a first look: light search, floor, balance and exposure.
 
 use super::balance::{SmallPictures, with_quick_shadows};
 use super::light_search::{Found, LightSearch, Sought};
@@ -7,23 +7,23 @@ use crate::data::Dataset;
 use crate::gpu::{GpuError, Renderer};
 use crate::model::Settings;
 
-/// A part of a look that nobody has decided.
+/// Part of the settings that is still to be chosen automatically.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Open {
-    /// Where the lights stand.
+    /// Positions of the lights.
     Lights,
-    /// Whether there is a floor; decided with the lights.
+    /// Presence of a floor, chosen together with the lights.
     Floor,
-    /// How much brighter lights are for their shadows.
+    /// Balance: factor for lights that compensates for their shadows.
     Balance,
-    /// How bright the picture is shown.
+    /// Exposure of the displayed picture.
     Exposure,
 }
 
-/// Automatic settings with all parts decided that are open. Uploads the volume and fills the light volumes on the way.
+/// Returns the settings with all `open` parts chosen. Uploads the volume and fills the light volumes.
 ///
 /// # Errors
-/// When the GPU cannot do it.
+/// Returns an error if the device fails or memory is exhausted.
 pub fn finish_look(
     renderer: &mut Renderer,
     dataset: &Dataset,
@@ -41,7 +41,7 @@ pub fn finish_look(
         }
     }
     if open.contains(&Open::Balance) || open.contains(&Open::Exposure) {
-        // Whether or not there are shadows: pictures with and without are as bright.
+        // Measured with shadows even if they are off: pictures with and without are equally bright.
         let seen = SmallPictures::of(renderer, dataset, &with_quick_shadows(&look))?;
         if open.contains(&Open::Balance) {
             look.shadows.balance = seen.balance();
@@ -54,7 +54,8 @@ pub fn finish_look(
     Ok(look)
 }
 
-/// Seeks the lights; `None` if nothing is seen, or there is no room for it: the picture can be made all the same.
+/// Searches for lights; `None` if nothing is visible, or if memory for the search is exhausted, which need not
+/// prevent the picture.
 fn seek(renderer: &Renderer, dataset: &Dataset, settings: &Settings) -> Result<Option<Found>, GpuError> {
     let search = LightSearch::new(renderer.shaders(), dataset, settings, Sought::KeyAndFill);
     match search.and_then(LightSearch::run) {

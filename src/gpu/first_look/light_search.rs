@@ -1,5 +1,5 @@
-//! Looks for the place of a light that makes the most of shadows: tries some on a small copy of the volume, in small
-//! pictures, one after the other.
+//! Light search: finds a position for a light that makes shadows most effective. Tries candidates one after the
+//! other, in small pictures of a downsampled volume.
 
 use std::collections::VecDeque;
 
@@ -13,45 +13,45 @@ use crate::data::Dataset;
 use crate::gpu::{GpuError, Renderer, ShaderLibrary};
 use crate::model::{Light, LightPlace, Settings, auto, key_and_fill};
 
-/// What a place must score more than where the lights are, in bits: less is not seen in pictures side by side, and
-/// opening similar volumes should not make the light jump.
+/// Minimum gain over the current position, in bits: smaller ones are invisible side by side, and opening similar
+/// volumes should not make the light jump.
 const CLEARLY_BETTER: f64 = 0.15;
 
-/// What a key on the right costs, in bits: people take light to come from the left (Sun & Perona 1998).
+/// Cost of a key light on the right, in bits: people assume that light comes from the left (Sun & Perona 1998).
 const ON_THE_RIGHT: f64 = 0.15;
 
-/// Suggestions stand at least so far apart: nearer ones look alike.
+/// Minimum angle between suggestions; nearer ones look alike.
 const APART_DEG: f64 = 30.0;
 
-/// Share of a picture that must show something for its light to be judged: fewer than a hundred pixels say nothing.
+/// Minimum fraction of visible pixels for a picture to be scored: fewer than a hundred pixels are meaningless.
 const LEAST_SEEN: f64 = 0.005;
 
-/// Which light's place is sought.
+/// Light whose position is searched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sought {
-    /// That of the key of a first look; its fill stands across from it.
+    /// Key light of a first look; its fill light follows on the opposite side.
     KeyAndFill,
-    /// That of a light of the settings; others stay where they are.
+    /// Light of the settings with this index; the others are not moved.
     Light(usize),
 }
 
-/// Lights, and what a picture with them is like.
+/// Candidate lights with their score.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Suggestion {
-    /// All lights of the look.
+    /// Complete list of lights.
     pub lights: Vec<Light>,
-    /// What they do for the picture.
+    /// Score of the picture with these lights.
     pub score: Score,
-    /// The balance that goes with them.
+    /// Balance measured with these lights.
     pub balance: f64,
-    /// The exposure that goes with them.
+    /// Exposure measured with these lights.
     pub exposure: f64,
-    /// What the place itself costs, in bits.
+    /// Penalty of the position, in bits.
     cost: f64,
 }
 
 impl Suggestion {
-    /// Lights that give a picture so many bits of tones, with a balance and an exposure.
+    /// Creates a suggestion with a given entropy of tones, balance and exposure.
     #[cfg(test)]
     pub(crate) fn of(lights: Vec<Light>, tones: f64, [balance, exposure]: [f64; 2]) -> Self {
         let score = Score { tones, shadowed: 0.0, dark: 0.0, edges: 0.0 };
@@ -63,25 +63,25 @@ impl Suggestion {
     }
 }
 
-/// What a search has found.
+/// Result of a light search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
-    /// The lights as they were.
+    /// Score of the current lights.
     pub start: Suggestion,
-    /// The best three places, the best first; fewer if nothing is seen.
+    /// Best three suggestions, best first; fewer if nothing is visible.
     pub best: Vec<Suggestion>,
-    /// Whether a floor would show a shadow where the object shows none.
+    /// `true` if the look gets a floor: the object shows few shadows itself, or stands on a broad base.
     wants_floor: bool,
 }
 
 impl Found {
-    /// What a search may have found.
+    /// Creates a search result.
     #[cfg(test)]
     pub(crate) fn of(start: Suggestion, best: Vec<Suggestion>) -> Self {
         Self { start, best, wants_floor: false }
     }
 
-    /// The best, unless what was there is about as good.
+    /// Returns the best suggestion, or the current lights unless it is clearly better.
     pub fn chosen(&self) -> &Suggestion {
         self.best
             .first()
@@ -89,7 +89,8 @@ impl Found {
             .unwrap_or(&self.start)
     }
 
-    /// A first look with what was found: its balance and exposure change as those of the small pictures do.
+    /// Returns the settings with the chosen lights; balance and exposure change in proportion to those of the small
+    /// pictures.
     #[must_use]
     pub fn apply(&self, first: &Settings) -> Settings {
         let (chosen, mut settings) = (self.chosen(), first.clone());
@@ -105,7 +106,7 @@ impl Found {
     }
 }
 
-/// A search, step by step.
+/// Light search, executed step by step.
 #[derive(Debug)]
 pub struct LightSearch {
     renderer: Renderer,
@@ -114,24 +115,24 @@ pub struct LightSearch {
     waiting: VecDeque<Candidate>,
     start: Option<Suggestion>,
     tried: Vec<(DVec3, Suggestion)>,
-    /// The picture without lights.
+    /// Picture without lights, which all candidates share.
     unlit: Vec<[f32; 4]>,
 }
 
-/// Lights to be tried.
+/// Candidate lights to be scored.
 #[derive(Debug)]
 struct Candidate {
-    /// Towards the light that is sought, as seen from the eye; `None`: where the lights are.
+    /// Direction to the light in view space; `None` for the current lights.
     way: Option<DVec3>,
     lights: Vec<Light>,
     cost: f64,
 }
 
 impl LightSearch {
-    /// A search for a look of a volume, on the device of some pipelines.
+    /// Prepares a search for a volume and its settings, on the device of the shader library.
     ///
     /// # Errors
-    /// When the GPU cannot do it.
+    /// Returns an error if the device fails or memory is exhausted.
     pub fn new(
         shaders: ShaderLibrary,
         dataset: &Dataset,
@@ -153,10 +154,10 @@ impl LightSearch {
         })
     }
 
-    /// Tries the next place: three small pictures at most. Whether there are more.
+    /// Scores the next candidate, which takes at most three small pictures. Returns true if there are more.
     ///
     /// # Errors
-    /// When the GPU cannot do it.
+    /// Returns an error if the device fails or memory is exhausted.
     pub fn step(&mut self) -> Result<bool, GpuError> {
         let Some(Candidate { way, lights, cost }) = self.waiting.pop_front() else { return Ok(false) };
         let quick = Settings { lights: lights.clone(), ..self.settings.clone() };
@@ -183,7 +184,7 @@ impl LightSearch {
         Ok(!self.waiting.is_empty())
     }
 
-    /// What was found; `None` before anything was tried.
+    /// Returns the result of the search; `None` if nothing was scored.
     pub fn finish(self) -> Option<Found> {
         let Self { start, mut tried, small, settings, .. } = self;
         let start = start?;
@@ -203,17 +204,17 @@ impl LightSearch {
         Some(found)
     }
 
-    /// Tries everything.
+    /// Scores all candidates.
     ///
     /// # Errors
-    /// When the GPU cannot do it.
+    /// Returns an error if the device fails or memory is exhausted.
     pub fn run(mut self) -> Result<Option<Found>, GpuError> {
         while self.step()? {}
         Ok(self.finish())
     }
 }
 
-/// The lights with the one that is sought at a place; `None` if there is no such light.
+/// Returns the lights with the selected one moved to a position; `None` if there is no such light.
 fn candidate(settings: &Settings, place: LightPlace, sought: Sought) -> Option<Candidate> {
     let way = place.in_view();
     let cost = if place.is_right() { ON_THE_RIGHT } else { 0.0 };

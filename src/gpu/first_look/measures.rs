@@ -1,60 +1,61 @@
-//! Figures of pictures: of linear, premultiplied light, over the pixels that show something.
+//! Image statistics of linear, premultiplied light, over visible pixels.
 
-/// Opacity from which a pixel counts as seen.
+/// Opacity from which a pixel counts as visible.
 const SEEN: f32 = 0.5;
 
-/// Linear luminance below which material counts as nearly black: a tenth of the way to white as displayed (25 of 255),
-/// where details can no longer be told apart beside bright parts.
+/// Linear luminance below which material counts as nearly black: a tenth of the displayed range (25 of 255), where
+/// details can no longer be distinguished beside bright parts.
 const NEARLY_BLACK: f64 = 0.01;
 
-/// Share of its light that a pixel must have lost to shadows to count as shadowed.
+/// Fraction of its light that a pixel must lose to shadows to count as shadowed.
 const SHADOWED: f64 = 0.3;
 
-/// The luminance that an automatic exposure gives half of what is seen: a little above the 18 % that photographers
-/// expose for, as volumes lie before a dark background.
+/// Target of the automatic exposure for the median luminance: a little above the 18 % that photographers expose for,
+/// because the background is dark.
 const USUAL_MEDIAN: f64 = 0.20;
 
-/// How far an automatic exposure goes for that: half a stop down, not quite one up. Beyond that the look is at fault, and
-/// what is dark on purpose stays dark.
+/// Range of the automatic exposure: half a stop down, not quite one up. Beyond that the settings are at fault, and
+/// intentionally dark pictures stay dark.
 const EXPOSURE_RANGE: (f64, f64) = (0.7, 1.8);
 
-/// The share of what is seen that an automatic exposure keeps below a luminance just before the tone map's shoulder ends
-/// all differences.
+/// Fraction of visible pixels that the automatic exposure keeps below the luminance `BRIGHT`, above which the
+/// shoulder of the tone map removes all differences.
 const BRIGHT_SHARE: f64 = 0.98;
 const BRIGHT: f64 = 0.9;
 
-/// Linear luminance (Rec. 709) of a texel.
+/// Returns the linear luminance (Rec. 709) of a texel.
 pub(super) fn luminance([r, g, b, _]: &[f32; 4]) -> f64 {
     0.2126 * f64::from(*r) + 0.7152 * f64::from(*g) + 0.0722 * f64::from(*b)
 }
 
-/// Whether a pixel shows something.
+/// Returns true if a pixel counts as visible.
 pub(super) fn is_seen(texel: &[f32; 4]) -> bool {
     texel[3] > SEEN
 }
 
-/// Luminance of the material in a pixel: however much of the background is seen through it.
+/// Returns the luminance of the material in a pixel, without the share of the background.
 pub(super) fn material_luminance(texel: &[f32; 4]) -> f64 {
     luminance(texel) / f64::from(texel[3]).max(1e-6)
 }
 
-/// Mean linear luminance (Rec. 709) of the pixels that show something; 0 when none does.
+/// Returns the mean linear luminance (Rec. 709) of the visible pixels; 0 if there are none.
 pub fn mean_luminance(light: &[[f32; 4]]) -> f64 {
     mean(light, luminance)
 }
 
-/// The share of the pixels that show something in which that is nearly black with an exposure; 0 when none shows any.
+/// Returns the fraction of visible pixels that are nearly black with an exposure; 0 if none is visible.
 pub fn dark_share(light: &[[f32; 4]], exposure: f64) -> f64 {
     mean(light, |texel| f64::from(u8::from(exposure * material_luminance(texel) < NEARLY_BLACK)))
 }
 
-/// The share of a picture's pixels that show something.
+/// Returns the fraction of pixels that are visible.
 pub fn seen_share(light: &[[f32; 4]]) -> f64 {
     let seen = light.iter().filter(|texel| is_seen(texel)).count();
     seen as f64 / light.len().max(1) as f64
 }
 
-/// Of the pixels that show something, the share that shadows darken by 30 % or more: `with` and `without` them.
+/// Returns the fraction of visible pixels that shadows darken by 30 % or more, from pictures with and without
+/// shadows.
 pub fn shadowed_share(with: &[[f32; 4]], without: &[[f32; 4]]) -> f64 {
     let seen = with.iter().zip(without).filter(|(texel, _)| is_seen(texel));
     let (dark, count) = seen.fold((0usize, 0usize), |(dark, count), (with, without)| {
@@ -64,8 +65,8 @@ pub fn shadowed_share(with: &[[f32; 4]], without: &[[f32; 4]]) -> f64 {
     dark as f64 / count.max(1) as f64
 }
 
-/// The exposure that gives what is seen in a picture its usual brightness, as far as nothing becomes too bright; 1 when
-/// nothing is seen, or only black.
+/// Returns the exposure that brings the median of the visible pixels to its target, unless the brightest would exceed
+/// their limit; 1 if nothing is visible, or only black.
 pub fn exposure_for(light: &[[f32; 4]]) -> f64 {
     let mut seen: Vec<f64> = light
         .iter()
@@ -88,7 +89,7 @@ pub fn exposure_for(light: &[[f32; 4]]) -> f64 {
     wanted.min(BRIGHT / bright)
 }
 
-/// The mean over the pixels that show something.
+/// Returns the mean of a value over the visible pixels; 0 if there are none.
 fn mean(light: &[[f32; 4]], value: impl Fn(&[f32; 4]) -> f64) -> f64 {
     let seen = light.iter().filter(|texel| is_seen(texel));
     let (sum, count) = seen.fold((0.0, 0usize), |(sum, count), texel| (sum + value(texel), count + 1));
@@ -115,7 +116,7 @@ mod tests {
     #[test]
     fn darkness_is_the_share_of_what_is_seen() {
         let texel = |grey: f32, alpha: f32| [grey * alpha, grey * alpha, grey * alpha, alpha];
-        // Lit, dark, dark but hardly there, lit haze, nothing.
+        // Lit, dark, dark but barely opaque, lit haze, empty.
         let light = [texel(0.5, 1.0), texel(0.009, 0.9), texel(0.0, 0.4), texel(0.3, 0.6), [0.0; 4]];
         assert!((dark_share(&light, 1.0) - 1.0 / 3.0).abs() < 1e-12);
         assert_eq!(dark_share(&light, 1.2), 0.0, "exposed a little longer");
@@ -135,11 +136,11 @@ mod tests {
         assert!((exposure_for(&even(0.25)) - 0.8).abs() < 1e-6);
         assert_eq!(exposure_for(&even(0.01)), 1.8, "what is dark is not made up");
         assert_eq!(exposure_for(&even(0.9)), 0.7);
-        // A tenth is bright: not beyond 0.9, whatever the median.
+        // A tenth is bright: limited to 0.9, whatever the median.
         let mut bright = even(0.12);
         bright.iter_mut().take(10).for_each(|texel| *texel = grey(0.75));
         assert!((exposure_for(&bright) - 1.2).abs() < 1e-6);
-        // What is hardly there does not count, nor does the background that is seen through the rest.
+        // Barely opaque pixels do not count, nor does the background seen through the others.
         let mut half = vec![[0.12, 0.12, 0.12, 0.6]; 9];
         half.extend(vec![[0.4, 0.4, 0.4, 0.4]; 90]);
         assert!((exposure_for(&half) - 1.0).abs() < 1e-6);

@@ -1,5 +1,5 @@
-//! What happens once when a volume is opened, besides the automatic settings: how bright the picture is, where the lights
-//! stand, and whether there is a floor.
+//! First look: measurements when a volume is opened, in addition to the automatic settings, that choose brightness,
+//! lights and the floor.
 
 mod balance;
 mod finish;

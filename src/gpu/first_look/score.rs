@@ -1,41 +1,43 @@
-//! How good a picture's light is, in a number: tones that differ, shadows that are seen, nothing that drowns in them.
+//! Lighting score: rates a picture by the variety of tones, visible shadows, and the absence of black areas.
 
 use super::measures::{dark_share, exposure_for, is_seen, material_luminance, shadowed_share};
 use crate::model::srgb_from_linear;
 
-/// Classes in which displayed luminance is counted: four of 255 steps each, the least that is told apart in pictures.
+/// Number of bins for displayed luminance: four of 255 steps each, the smallest difference that is noticed in
+/// pictures.
 const TONES: usize = 64;
 
-/// Shares of a picture in shadow: none, best, and where shadows begin to rule it. Every shadow shapes: of things that cast
+/// Corners of the score of shadowed area: none, best, and too much. All shadows convey shape; for objects that cast
 /// few, some are better than none.
 const IN_SHADOW: [f64; 3] = [0.0, 0.22, 0.40];
 
-/// What shadows of the best share are worth, in bits of tones: half of what the tones of a picture have.
+/// Weight of shadows with the best area, in bits: half the entropy of a typical picture's tones.
 const OF_SHADOWS: f64 = 3.0;
 
-/// What each share of nearly black costs beyond the first two hundredths: 5 % more takes what 1 bit of tones gives.
+/// Cost of nearly black area beyond the first two hundredths, in bits per unit of area: another 5 % cancel 1 bit of
+/// tones.
 const OF_DARKNESS: f64 = 20.0;
 const DARKNESS_LET_PASS: f64 = 0.02;
 
-/// What it is worth that all edges of the unlit picture are still there.
+/// Weight of edges, in bits, if all edges of the unlit picture are preserved.
 const OF_EDGES: f64 = 0.5;
 
-/// What a picture's light is like.
+/// Parts of the lighting score of a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Score {
     /// Entropy of displayed luminance, in bits (Gumhold 2002).
     pub tones: f64,
-    /// Share of what is seen that shadows darken by 30 % or more.
+    /// Fraction of visible pixels that shadows darken by 30 % or more.
     pub shadowed: f64,
-    /// Share of what is seen that is nearly black.
+    /// Fraction of visible pixels that are nearly black.
     pub dark: f64,
-    /// Share of the contrast of the unlit picture's edges that is still there.
+    /// Fraction of the unlit picture's edge contrast that is preserved.
     pub edges: f64,
 }
 
 impl Score {
-    /// Of a picture with shadows, without, and without lights: linear light of the same size, the first as bright as the
-    /// second on the whole.
+    /// Scores a picture with shadows, given the ones without shadows and without lights: linear light of equal size,
+    /// the first two with equal mean brightness.
     pub(super) fn of(with: &[[f32; 4]], without: &[[f32; 4]], unlit: &[[f32; 4]], width: usize) -> Self {
         let exposure = exposure_for(with);
         let shown = |light: &[[f32; 4]], exposure: f64| -> Vec<Option<f64>> {
@@ -50,7 +52,7 @@ impl Score {
         }
     }
 
-    /// All of it in one number, in bits: more is better.
+    /// Returns the total score in bits; higher is better.
     pub fn total(&self) -> f64 {
         self.tones + OF_SHADOWS * tri(self.shadowed, IN_SHADOW)
             - OF_DARKNESS * (self.dark - DARKNESS_LET_PASS).max(0.0)
@@ -58,19 +60,20 @@ impl Score {
     }
 }
 
-/// Displayed luminance of a pixel's material, 0 … 1.
+/// Returns the displayed luminance of a pixel's material, 0 … 1.
 fn displayed(texel: &[f32; 4], exposure: f64) -> f64 {
     srgb_from_linear((exposure * material_luminance(texel)).clamp(0.0, 1.0))
 }
 
-/// Brings the mean of unlit pictures, which ambient light alone makes, to that of lit ones: their edges are compared.
+/// Returns the exposure that brings the mean of an unlit picture, lit by ambient light only, to that of lit ones, so
+/// that edges can be compared.
 fn exposure_without_bounds(unlit: &[[f32; 4]]) -> f64 {
     let seen = unlit.iter().filter(|texel| is_seen(texel)).map(material_luminance);
     let (sum, count) = seen.fold((0.0, 0usize), |(sum, count), y| (sum + y, count + 1));
     if sum > 0.0 { 0.2 * count as f64 / sum } else { 1.0 }
 }
 
-/// How often each class of displayed luminance occurs.
+/// Returns the histogram of displayed luminance.
 fn tones(displayed: impl Iterator<Item = f64>) -> [usize; TONES] {
     let mut counts = [0; TONES];
     for value in displayed {
@@ -79,20 +82,20 @@ fn tones(displayed: impl Iterator<Item = f64>) -> [usize; TONES] {
     counts
 }
 
-/// Entropy of how often things occur, in bits.
+/// Returns the entropy of a histogram, in bits.
 pub(super) fn entropy(counts: &[usize]) -> f64 {
     let total: usize = counts.iter().sum();
     let share = |&count: &usize| count as f64 / total.max(1) as f64;
     counts.iter().map(share).filter(|&p| p > 0.0).map(|p| -p * p.log2()).sum()
 }
 
-/// A triangle: 0 up to the first place, 1 at the second, 0 from the third on.
+/// Triangle function: 0 up to the first corner, 1 at the second, 0 from the third on.
 pub(super) fn tri(x: f64, [from, best, to]: [f64; 3]) -> f64 {
     ((x - from) / (best - from)).min((to - x) / (to - best)).clamp(0.0, 1.0)
 }
 
-/// Of the contrast between neighbours in the unlit picture, the share that the lit one has at least; 1 where there is
-/// none. Neighbours of which one shows nothing do not count: outlines are always there.
+/// Returns the fraction of the unlit picture's contrast between neighbours that the lit one preserves; 1 if there is
+/// none. Pairs with an invisible pixel are ignored, because outlines are always visible.
 pub(super) fn kept_edges(lit: &[Option<f64>], unlit: &[Option<f64>], width: usize) -> f64 {
     let (mut kept, mut all) = (0.0, 0.0);
     let mut compare = |a: usize, b: usize| {
@@ -150,7 +153,7 @@ mod tests {
         assert!((kept_edges(&step(0.1, 0.2), &step(0.2, 0.6), 3) - 0.25).abs() < 1e-12);
         assert_eq!(kept_edges(&step(0.0, 1.0), &step(0.2, 0.6), 3), 1.0, "more is not better");
         assert_eq!(kept_edges(&step(0.0, 1.0), &step(0.4, 0.4), 3), 1.0, "nothing to lose");
-        // Where rows end there is no edge, nor beside what is not seen.
+        // The ends of rows are no edges, and neither are the borders of invisible pixels.
         let mut gone = step(0.2, 0.6);
         (gone[2], gone[5]) = (None, None);
         assert_eq!(kept_edges(&step(0.0, 0.0), &gone, 3), 1.0);
@@ -167,7 +170,7 @@ mod tests {
     #[test]
     fn shadows_of_the_best_share_win() {
         let grey = |value: f64| [value as f32, value as f32, value as f32, 1.0];
-        // A ramp of light, of which shadows take a share of the pixels away to a half.
+        // Ramp of light, with half the light removed from a fraction of the pixels.
         let without: Vec<_> = (0..400).map(|at| grey(0.1 + 0.4 * f64::from(at % 20) / 20.0)).collect();
         let shadowed = |share: f64, left: f32| -> Vec<[f32; 4]> {
             let dark = |at: usize| (at * 7919 % 400) < (share * 400.0) as usize;

@@ -1,4 +1,4 @@
-//! A look on a small copy of its volume: how bright it is, and how to draw it quickly.
+//! Settings measured on a downsampled volume: balance and exposure, and a fast variant for drawing.
 
 use super::balance::SmallPictures;
 use super::measures::exposure_for;
@@ -7,20 +7,20 @@ use crate::data::{Dataset, Volume};
 use crate::gpu::{GpuError, Renderer};
 use crate::model::Settings;
 
-/// A look that was measured on a small copy of its volume.
+/// Settings that were measured on a downsampled copy of their volume.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SmallLook {
-    /// The look, balanced and exposed.
+    /// Settings for the whole volume, balanced and exposed.
     pub settings: Settings,
-    /// How it is drawn with the copy, quickly.
+    /// Fast variant for drawing the downsampled volume.
     pub quick: Settings,
 }
 
 impl SmallLook {
-    /// Measures a look of a whole volume with a small copy of it, which the renderer shows.
+    /// Measures settings of the whole volume on a downsampled copy, which the renderer draws.
     ///
     /// # Errors
-    /// When the GPU cannot do it.
+    /// Returns an error if the device fails or memory is exhausted.
     pub fn measure(
         renderer: &mut Renderer,
         whole: &Volume,
@@ -35,7 +35,7 @@ impl SmallLook {
         Ok(Self::known(whole, small, settings))
     }
 
-    /// A look whose brightness is known.
+    /// Creates the pair of settings for which balance and exposure are known.
     pub fn known(whole: &Volume, small: &Dataset, settings: Settings) -> Self {
         Self { quick: quick(&settings, whole, small.volume()), settings }
     }

@@ -1,4 +1,4 @@
-//! A volume with so few voxels that many looks of it can be tried at once.
+//! Downsampled volume for trying many settings in a short time.
 
 use crate::data::{Dataset, Volume, reduced_dims};
 use crate::gpu::GpuError;
@@ -7,13 +7,13 @@ use crate::plan::preview_slab;
 
 use super::balance::{MEASURED_SIZE, with_quick_shadows};
 
-/// Most voxels: 96³, of which a software adapter fills a light volume in a few hundredths of a second.
+/// Maximum number of voxels: 96³, for which a software adapter fills a light volume in a few hundredths of a second.
 const MOST_VOXELS: usize = 96 * 96 * 96;
 
-/// The volume itself if it is small, else blocks of its voxels averaged, which are about as long along every axis.
+/// Returns the volume itself if it is small, else one with averaged blocks that are about as long along every axis.
 ///
 /// # Errors
-/// When what is left cannot be a volume.
+/// Returns an error if the averaged voxels do not form a valid volume.
 pub fn small_volume(dataset: &Dataset) -> Result<Dataset, GpuError> {
     let volume = dataset.volume();
     let block = block_for(volume.dims(), volume.spacing_mm().into());
@@ -24,7 +24,7 @@ pub fn small_volume(dataset: &Dataset) -> Result<Dataset, GpuError> {
     Ok(Dataset::new(small))
 }
 
-/// Voxels along the edges of the smallest blocks of which there are few enough.
+/// Returns the smallest block size, in voxels, with at most `MOST_VOXELS` blocks.
 fn block_for(dims: [usize; 3], spacing_mm: [f64; 3]) -> [usize; 3] {
     let shortest = spacing_mm.into_iter().fold(f64::INFINITY, f64::min);
     let mut edge = 1.0;
@@ -37,17 +37,18 @@ fn block_for(dims: [usize; 3], spacing_mm: [f64; 3]) -> [usize; 3] {
         if left <= MOST_VOXELS {
             return block;
         }
-        // At least as long that an axis which is not averaged as a whole has longer blocks: spacings may be worlds apart.
+        // At least one axis that is not fully averaged gets longer blocks; spacings may differ by many orders of
+        // magnitude.
         let longer = (0..3).filter(|&axis| block[axis] < dims[axis]);
         let next = longer.map(|axis| (block[axis] as f64 + 0.5) * spacing_mm[axis] / shortest);
         edge = next.fold(f64::INFINITY, f64::min).max(edge + 1.0);
     }
 }
 
-/// The settings for a volume with averaged voxels, quick: as previews are.
+/// Returns the settings for a downsampled volume, with the fast kernels and slabs of previews.
 pub(super) fn quick(settings: &Settings, whole: &Volume, small: &Volume) -> Settings {
     let mut quick = with_quick_shadows(settings);
-    // Opacities refer to the same thickness, however many voxels that has.
+    // Opacities keep their reference length, although voxels are larger.
     if let Length::Voxels(_) = quick.opacity_unit {
         let scene = whole.scene();
         quick.opacity_unit = Length::Mm(quick.opacity_unit.in_scene(&scene) * scene.mm_per_unit);

@@ -1,4 +1,4 @@
-//! Volumes that an adapter cannot hold, with fewer voxels.
+//! Downsampling of volumes that exceed the adapter's memory or limits.
 
 use glam::DVec3;
 
@@ -8,42 +8,45 @@ use crate::gpu::light::volume::attenuation_texture;
 use crate::gpu::volume::{self, presence::Presence};
 use crate::gpu::{Context, GpuError};
 
-/// Volumes of no more voxels are not tried out: 256³ take 100 MiB with one light.
+/// Number of voxels up to which a volume is not tested: 256³ take 100 MiB with one light.
 const SMALL: usize = 1 << 24;
-/// Volumes with longer axes are tried out: every adapter allows 2048 texels, which hold what lies around the grid, too.
+/// Axis length up to which a volume is not tested: every adapter allows 2048 texels, padding included.
 const SHORT: usize = 2048 - BORDER;
 
-/// Most texels of a texture beyond the voxels of an axis: four before and behind, and up to whole eights.
+/// Maximum number of texels beyond the voxels of an axis: a padding of four on each side, rounded up to a multiple of
+/// eight.
 const BORDER: usize = 16;
 
-/// Axes along which voxels are no longer than this, in shortest edges, are averaged together: scans have thicker
-/// slices than pixels, and lose less if their pixels are averaged first. Between 1 and 2.
+/// Maximum ratio of edge lengths, relative to the shortest, of axes that are averaged together. Slices of scans are
+/// often thicker than pixels; averaging the pixels first loses less. Between 1 and 2.
 const ALIKE: f64 = std::f64::consts::SQRT_2;
 
-/// The volume itself, if the adapter can hold it with one light, else with as few of its voxels averaged
-/// ([`Volume::reduced`]) as needed, by powers of two.
+/// Returns the volume itself if the adapter can hold it with one light, else a downsampled one ([`Volume::reduced`])
+/// with the smallest sufficient power-of-two blocks.
 ///
 /// # Errors
-/// When not even a small volume can be held, or the device is lost.
+/// Returns an error if not even a small volume fits, or if the device is lost.
 pub fn fitted(context: &Context, volume: Volume) -> Result<Volume, GpuError> {
     let block =
         block_that_fits(volume.dims(), volume.spacing_mm().into(), |dims| holds(context, &volume, dims))?;
     volume.reduced(block).map_err(|err| GpuError::Refused(err.to_string()))
 }
 
-/// Voxels along x, y and z of what would be shown of a volume of so many: as many as the adapter can hold with one light.
+/// Returns the number of voxels along x, y and z to which a volume of `dims` voxels would be downsampled to fit the
+/// adapter with one light.
 ///
-/// The volume need not have been read. What is missing in it, and labels, which take more, show when it has been.
+/// The volume need not have been read. Missing voxels and labels, which take more memory, are only known when it has
+/// been.
 ///
 /// # Errors
-/// When not even a small volume can be held, or the device is lost.
+/// Returns an error if not even a small volume fits, or if the device is lost.
 pub fn held_of(context: &Context, dims: [usize; 3], voxel_type: VoxelType) -> Result<[usize; 3], GpuError> {
     let stand_in = stand_in(voxel_type).map_err(|err| GpuError::Refused(err.to_string()))?;
     let block = block_that_fits(dims, [1.0; 3], |dims| holds(context, &stand_in, dims))?;
     Ok(reduced_dims(dims, block))
 }
 
-/// One voxel of a type.
+/// Creates a volume of one voxel with a type of the same storage.
 fn stand_in(voxel_type: VoxelType) -> Result<Volume, VolumeError> {
     let samples = match voxel_type {
         VoxelType::U8 | VoxelType::I8 => Samples::U8(vec![0]),
@@ -52,12 +55,13 @@ fn stand_in(voxel_type: VoxelType) -> Result<Volume, VolumeError> {
     Volume::with_spacing("", [1; 3], DVec3::ONE, samples)
 }
 
-/// Bytes on the adapter of a volume of so many voxels, with one light: density 2, pyramid 2 and a seventh, attenuation 2.
+/// Returns the size in bytes, on the adapter, of a volume with one light: per voxel 2 for density, 2 and a seventh of
+/// that for the pyramid, 2 for attenuation.
 pub fn bytes_with_one_light(dims: [usize; 3]) -> u64 {
     dims.iter().fold(1u64, |all, &n| all.saturating_mul(n as u64)).saturating_mul(44) / 7
 }
 
-/// The smallest blocks of voxels that must become one each for `holds` to hold what is left.
+/// Returns the smallest block size with which the averaged volume passes `holds`.
 fn block_that_fits(
     all: [usize; 3],
     spacing_mm: [f64; 3],
@@ -83,24 +87,24 @@ fn block_that_fits(
     }
 }
 
-/// Blocks twice as long along the axes whose voxels are short.
+/// Doubles the block size along the axes with the shortest edges.
 fn larger(block: [usize; 3], dims: [usize; 3], spacing_mm: [f64; 3]) -> [usize; 3] {
     let edges = [0, 1, 2].map(|axis| {
-        // A single slice cannot be averaged.
+        // An axis with a single voxel cannot be averaged.
         if dims[axis] > 1 { spacing_mm[axis] * block[axis] as f64 } else { f64::INFINITY }
     });
     let shortest = edges.into_iter().fold(f64::INFINITY, f64::min);
     [0, 1, 2].map(|axis| if edges[axis] <= ALIKE * shortest { 2 * block[axis] } else { block[axis] })
 }
 
-/// Makes the textures of such a volume and of one light, and gives them back.
+/// Tries to allocate the textures of a volume and of one light, and drops them again.
 fn holds(context: &Context, like: &Volume, dims: [usize; 3]) -> Result<(), GpuError> {
-    // Sevenths of bytes per voxel: of density, pyramid and light 44, of what is there 48, of classified labels 64.
+    // Sevenths of bytes per voxel: 44 for density, pyramid and light, 48 for presence, 64 for classified labels.
     let of_missing = if like.missing().is_some() { 48 } else { 0 };
     let of_labels = if matches!(like.kind().kind, DataKind::LabelMap { .. }) { 64 } else { 0 };
     let voxels = dims.iter().fold(1u64, |all, &n| all.saturating_mul(n as u64));
     let bytes = voxels.saturating_mul(44 + of_missing + of_labels) / 7;
-    // A software driver takes memory when it is written to, and the system then ends the program.
+    // Software drivers commit memory when it is first written, and the system then kills the process.
     if context.is_software() && bytes > memory_budget_bytes() {
         return Err(GpuError::OutOfMemory { what: "the volume".to_owned(), mebibytes: bytes >> 20 });
     }
@@ -109,7 +113,7 @@ fn holds(context: &Context, like: &Volume, dims: [usize; 3]) -> Result<(), GpuEr
         Ok((textures, presence, attenuation_texture(context, dims, context.storage_format)?))
     });
     let held = made.map(drop);
-    // What was dropped, of a failed attempt too, is given back when the device is looked after.
+    // Dropped textures, including those of a failed attempt, are only freed when the device is polled.
     let waited = context.wait();
     held.and(waited)
 }
@@ -118,7 +122,7 @@ fn holds(context: &Context, like: &Volume, dims: [usize; 3]) -> Result<(), GpuEr
 mod tests {
     use super::*;
 
-    /// An adapter with so many bytes, and axes of so many voxels.
+    /// Simulates an adapter with this many bytes, and with textures of `longest` texels along an axis.
     fn adapter(bytes: usize, longest: usize) -> impl Fn([usize; 3]) -> Result<(), GpuError> {
         move |dims| match dims.into_iter().find(|n| n + BORDER > longest) {
             Some(size) => Err(GpuError::OverLimit {

@@ -1,4 +1,4 @@
-//! The work for one picture, which holds the renderer until it is done or dropped.
+//! Job: the work for one picture in steps, which borrows the renderer until it is done or dropped.
 
 use std::collections::VecDeque;
 use std::time::Instant;
@@ -20,14 +20,14 @@ use crate::gpu::{GpuError, RenderOptions};
 use crate::model::ShadowAlgorithm;
 use crate::plan::{FrameKeys, LitLights, Request, VolumeKey};
 
-/// How many times longer a picture takes whose samples cast rays themselves, roughly: rows of a band
-/// are fewer by so much.
+/// Approximate ratio of times per row, with rays to lights from every sample and without; bands have fewer rows by
+/// this factor.
 const DIRECT_COST: u32 = 16;
 
-/// The work for one picture, step by step.
+/// Work for one picture, executed step by step.
 ///
-/// Only one can be under way, and nothing else can be done with the renderer meanwhile. Dropping it leaves what was
-/// shown before, and what is complete of its products.
+/// It borrows the renderer, so only one job exists at a time. Dropping it keeps the picture shown before, and the
+/// products that are complete.
 #[derive(Debug)]
 pub struct Job<'r> {
     pub(super) tools: &'r Tools,
@@ -38,76 +38,76 @@ pub struct Job<'r> {
     pub(super) report: &'r mut Report,
     pub(super) request: Request,
     pub(super) options: RenderOptions,
-    /// Keys of its products, with the light volumes that it really uses.
+    /// Keys of the products, with those of the light volumes in actual use (which may be coarser than requested).
     pub(super) keys: FrameKeys,
     pub(super) lit: LitLights,
-    /// Place of every light's volume among those that are kept.
+    /// Index of each light's volume among the cached ones.
     pub(super) slots: Vec<Option<usize>>,
     pub(super) builds: Vec<LightBuild>,
-    /// The volume of the sky's visibility.
+    /// Cached or new volume of sky visibility.
     pub(super) sky: PlacedSky,
-    /// The volume of light that has bounced.
+    /// Cached or new volume of scattered light.
     pub(super) bounces: PlacedBounces,
-    /// Shades with the volume of each light, for the combined one to be filled.
+    /// Shading parameters with the volume of each light, for filling the combined volume.
     pub(super) combine: Option<EyePass>,
     pub(super) eye: EyePass,
     pub(super) scattering: Option<Scattering>,
-    /// The eye's sheets, where voxels are scattered.
+    /// Sheets of the eye, for the scattering engine.
     pub(super) eye_sheets: Option<EyeScatter>,
-    /// The target that it draws into.
+    /// Target that is drawn into.
     pub(super) role: Role,
     pub(super) steps: VecDeque<Step>,
     pub(super) total: usize,
 }
 
 impl Job<'_> {
-    /// What the picture is of.
+    /// Returns the request that the picture is made for.
     pub fn request(&self) -> &Request {
         &self.request
     }
 
-    /// What it has taken so far.
+    /// Returns the times and counts so far.
     pub fn report(&self) -> &Report {
         self.report
     }
 
-    /// Share of the steps that are done.
+    /// Returns the fraction of the steps that are done, 0 to 1.
     pub fn progress(&self) -> f32 {
         1.0 - self.steps.len() as f32 / self.total.max(1) as f32
     }
 
-    /// What comes next; `None` when the picture is complete.
+    /// Returns the stage of the next step; `None` when the picture is complete.
     pub fn stage(&self) -> Option<Stage> {
         self.steps.iter().find_map(Step::stage)
     }
 
-    /// Whether the picture is complete.
+    /// Returns true when the picture is complete.
     pub fn is_done(&self) -> bool {
         self.stage().is_none()
     }
 
-    /// Multiplies all light of what is shown, as previews need it; the light itself stays as it is.
+    /// Sets the exposure of previews, which multiplies the displayed light; the linear picture is unchanged.
     pub fn set_exposure(&mut self, exposure: f32) {
         self.options.exposure = exposure;
         self.keys.display = self.keys.display.clone().exposed(exposure);
     }
 
-    /// Cuts the rows that are still to be drawn into bands of `rows`.
+    /// Splits the rows that are still to be drawn into bands of `rows`.
     pub fn set_band(&mut self, rows: u32) {
         let direct = self.request.settings.shadows.algorithm == ShadowAlgorithm::Direct;
-        // A ray to each light from every sample: so much longer.
+        // Rays to each light from every sample take that much longer.
         let rows = if direct { (rows / DIRECT_COST).max(8) } else { rows.max(1) };
         let before = self.steps.len();
         cut_into_bands(&mut self.steps, rows);
-        // Progress counts what is left of what there is.
+        // Keeps the number of finished steps, so that progress stays correct.
         self.total = self.total - before + self.steps.len();
     }
 
-    /// Submits the next step. Returns whether there are more; after the last one the new picture is
-    /// what the renderer reads back.
+    /// Submits the next step. Returns true if there are more; after the last one the new picture is the one that the
+    /// renderer reads back.
     ///
     /// # Errors
-    /// What the device complains about.
+    /// Returns the device's error.
     pub fn step(&mut self) -> Result<bool, GpuError> {
         self.finish_products();
         let next = self.steps.front().and_then(|step| Some((step.clone(), step.stage()?)));

@@ -1,4 +1,4 @@
-//! The filling of one light volume, laid out in steps.
+//! Filling of a light volume: its temporary resources and its steps.
 
 use super::loaded::Wanted;
 use super::step::{LightStep, Product, RaycastStep, Step};
@@ -17,66 +17,66 @@ use crate::gpu::volume::listed_bricks::{Listed, listed};
 use crate::model::{COLORS, SceneLight, ShadowAlgorithm, Shadows};
 use crate::plan::{BrickSet, LightKey, LightView, light_views, reverse_reach};
 
-/// Slabs per chunk of the light march: enough to be worth a dispatch, few enough for one to be short.
+/// Range of slabs per chunk of the light march: enough to be worth a dispatch, few enough for a short one.
 const CHUNK_SLABS: std::ops::RangeInclusive<u64> = 8..=64;
 
-/// One light volume to be filled.
+/// Work to fill one light volume.
 #[derive(Debug)]
 pub(super) struct LightBuild {
     /// Index of the light in the settings, for counting.
     pub index: usize,
-    /// Place of the volume among those that are kept.
+    /// Index of the volume among the cached ones.
     pub slot: usize,
-    /// The point lights that stand for it; mostly the light itself.
+    /// Point lights on an area light; the light itself if it has no size.
     pub points: Vec<SceneLight>,
-    /// The mean of their volumes in the making, if there are several.
+    /// Temporary volumes for averaging, if there are several points.
     pub average: Option<Average>,
-    /// The volumes of its colours in the making, where each is followed by itself.
+    /// Temporary volumes of red, green and blue light, for coloured shadows.
     pub colors: Option<ColorPlanes>,
-    /// Whether the volume is coarser than the settings ask for, as only previews have it.
+    /// `true` if the volume is coarser than the settings ask for, as in previews.
     pub is_coarse: bool,
-    /// Stacks of sheets, those of each point after those of the point before; none where rays fill the volume.
+    /// Stacks of sheets in the order of the points; empty where rays fill the volume.
     pub views: Vec<BuildView>,
-    /// Cells around what is filled that the way back from the sheets reads.
+    /// Reach of the back-projection, in cells around the filled ones.
     pub reverse_reach: u8,
-    /// Cells beyond those that the transfer functions show whose sheets will be read.
+    /// Distance from visible cells, in cells, up to which sheets are read.
     pub reach: u8,
-    /// Data bricks whose scattered sheets will be splatted back.
+    /// Data bricks whose scattered sheets are back-projected; `None` for the gathering engine.
     pub read: Option<BrickSet>,
-    /// Bricks around what is filled that are still to be cleared.
+    /// Bricks of the margin that have yet to be cleared.
     pub margin: Vec<Listed>,
-    /// Bricks of the light volume, for rays to fill or sums to be normalised in.
+    /// Bricks of the light volume, for ray casting and normalisation.
     pub bricks: Vec<Listed>,
-    /// The view that is being marched.
+    /// View that is being marched.
     pub current: Option<CurrentView>,
-    /// Whether voxels are scattered.
+    /// `true` for the scattering engine.
     pub scatters: bool,
 }
 
-/// A stack of sheets.
+/// Stack of sheets seen from one point.
 #[derive(Debug)]
 pub(super) struct BuildView {
-    /// Number of the point that looks along it.
+    /// Index of the point light.
     pub point: usize,
     pub geometry: LightView,
-    /// Slabs per chunk.
+    /// Number of slabs per chunk.
     pub chunk: u32,
 }
 
-/// What the march through one view of a light works with.
+/// State of the march through one view of a light.
 #[derive(Debug)]
 pub(super) struct CurrentView {
     pub sheets: Sheets,
     pub schedule: Schedule,
-    /// What is scattered into the sheets and back, where voxels are scattered.
+    /// Scattering state, for the scattering engine.
     pub scatter: Option<LightScatter>,
 }
 
 impl LightBuild {
-    /// Lays out the filling of the volume of light `index` of a request, which has that key.
+    /// Plans the filling of the volume of light `index` of a request, with that key.
     ///
     /// # Errors
-    /// When memory is out.
+    /// Returns an error if memory is exhausted.
     pub(super) fn new(
         Wanted { context, request, options, .. }: Wanted<'_>,
         volume: &GpuVolume,
@@ -98,7 +98,7 @@ impl LightBuild {
         let all: Vec<_> = geometries.iter().flatten().cloned().collect();
         let chunk = |geometry: &LightView| {
             let usual = if scatters { SLABS_PER_STEP } else { chunk_slabs(volume, geometry) };
-            // Whole texels of the ring.
+            // Rounded up to whole texels of the ring.
             options.chunk.unwrap_or(usual).next_multiple_of(SLABS_PER_TEXEL)
         };
         let of_point = |(point, geometries): (usize, Vec<LightView>)| {
@@ -125,7 +125,7 @@ impl LightBuild {
         })
     }
 
-    /// The volume that a colour fills, or all of the light, where the light's own is `whole`.
+    /// Returns the volume to be filled for a colour; `whole` is the light's own volume, used for white light.
     pub(super) fn of_color<'a>(&'a self, color: Option<usize>, whole: &'a LightVolume) -> &'a LightVolume {
         match (&self.colors, color) {
             (Some(planes), Some(color)) => planes.plane(color),
@@ -133,7 +133,7 @@ impl LightBuild {
         }
     }
 
-    /// The volume that the light of a point fills, or a colour of that, where the light's own is `whole`.
+    /// Returns the volume to be filled for a point and a colour; `whole` is the light's own volume.
     pub(super) fn filled<'a>(
         &'a self,
         point: usize,
@@ -146,14 +146,15 @@ impl LightBuild {
         }
     }
 
-    /// Bytes of what only the filling needs.
+    /// Returns the size of the temporary volumes, in bytes.
     pub(super) fn bytes(&self) -> u64 {
         self.average.as_ref().map_or(0, Average::bytes) + self.colors.as_ref().map_or(0, ColorPlanes::bytes)
     }
 
-    /// The steps of build number `at`, each chunk of a view cut into `parts`.
+    /// Returns the steps of build number `at`, with each chunk of a view split into `parts`.
     pub(super) fn steps(&self, at: usize, parts: u32) -> Vec<Step> {
-        // Scattered slabs are short enough, and not cut into pixels; those of points of a light are many.
+        // Scattered slabs are short enough and cannot be split by pixels; the points of an area light are many short
+        // views.
         let parts = if self.scatters || self.average.is_some() { 1 } else { parts };
         let mut steps = Vec::new();
         if self.colors.is_some() {
@@ -168,7 +169,7 @@ impl LightBuild {
         steps
     }
 
-    /// The steps that follow a colour, or all of the light.
+    /// Returns the steps for one colour, or for white light.
     fn steps_of_color(&self, at: usize, color: Option<usize>, parts: u32) -> Vec<Step> {
         let mut steps = Vec::new();
         for point in 0..self.points.len() {
@@ -183,7 +184,7 @@ impl LightBuild {
             }
             if self.views.is_empty() {
                 let count = self.bricks.len();
-                // One step at least, which begins a light volume without bricks.
+                // At least one step, which starts a light volume without bricks.
                 let firsts = (0..count.max(1)).step_by(BRICKS_PER_STEP);
                 let bricks = |first: usize| first..count.min(first + BRICKS_PER_STEP);
                 let step =
@@ -198,10 +199,10 @@ impl LightBuild {
     }
 }
 
-/// Slabs per chunk so that the ring takes no more than two bytes per voxel of the volume.
+/// Returns the number of slabs per chunk with which the ring takes at most two bytes per voxel of the volume.
 fn chunk_slabs(volume: &GpuVolume, view: &LightView) -> u32 {
     let pixels = u64::from(view.frame.size[0]) * u64::from(view.frame.size[1]);
-    // Two bytes each, too.
+    // A slab's pixel takes two bytes, too.
     let fits = volume.volume.voxel_count() as u64 / pixels.max(1);
     fits.clamp(*CHUNK_SLABS.start(), *CHUNK_SLABS.end()) as u32
 }

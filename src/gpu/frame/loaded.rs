@@ -1,4 +1,4 @@
-//! A volume with everything on the GPU that is made from it.
+//! Loaded volume with all GPU products that are made from it.
 
 use std::sync::Arc;
 
@@ -17,46 +17,45 @@ use crate::gpu::{Context, GpuError, RenderOptions};
 use crate::model::{Classification, Settings, SheetOrder};
 use crate::plan::{BouncesKey, CombinedKey, FrameKeys, LightKey, Request, SkyKey, TablesKey};
 
-/// What a picture is asked for, and of whom.
+/// Inputs for finding or creating the products of a picture.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Wanted<'a> {
     pub context: &'a Context,
     pub request: &'a Request,
     pub options: &'a RenderOptions,
     pub keys: &'a FrameKeys,
-    /// Counts pictures: volumes that were used last are kept longest.
+    /// Number of the picture, stored as the last use of cached volumes.
     pub now: u64,
 }
 
-/// A volume on the GPU, and what makes sense only together with it.
+/// Volume on the GPU, with the products that depend on it.
 #[derive(Debug)]
 pub(crate) struct Loaded {
     /// Density, pyramid and gradients.
     pub volume: GpuVolume,
-    /// What was uploaded: the voxels, and the values that they show.
+    /// Dataset that was uploaded: voxels, and the values at densities 0 and 1.
     pub dataset: Dataset,
-    /// Both transfer functions, and where they show anything.
+    /// Tables of both transfer functions, with the cells where they are visible.
     pub tables: Cached<TablesKey, Tables>,
-    /// Voxels as these classify them, once a picture has asked for that.
+    /// Pre-classified voxels, if a picture has asked for them.
     materials: Vec<Arc<Materials>>,
     /// Attenuation volumes, most recently used first.
     pub lights: Vec<Cached<LightKey, LightVolume>>,
-    /// The diffuse light of all of them in one.
+    /// Diffuse light of all shadowed lights in one volume.
     pub combined: Option<Cached<CombinedKey, CombinedLight>>,
-    /// How open to the sky places are.
+    /// Cached volumes of sky visibility.
     pub skies: Vec<Cached<SkyKey, SkyVolume>>,
-    /// Light that has bounced.
+    /// Cached volumes of scattered light.
     pub bounces: Vec<Cached<BouncesKey, BouncesVolume>>,
-    /// Voxels for scattering, once a picture has asked for them.
+    /// Lists of voxels for the scattering engine, if a picture has asked for them.
     pub voxels: Option<Arc<ScatterVoxels>>,
 }
 
 impl Loaded {
-    /// Makes room for a volume, and tables for a first look; nothing is uploaded yet, but for what is known of which of
-    /// its voxels are there.
+    /// Allocates a volume and its tables. Nothing is uploaded yet, except a `presence` texture that is passed in.
     ///
     /// # Errors
-    /// When the adapter cannot hold them.
+    /// Returns an error if the adapter cannot hold them.
     pub(crate) fn new(
         context: &Context,
         dataset: &Dataset,
@@ -82,16 +81,17 @@ impl Loaded {
         })
     }
 
-    /// Whether it was made from voxels of the type of these: the same numbers of another type are stored otherwise.
+    /// Returns true if the dataset has the voxel type of the loaded one; equal numbers of another type have another
+    /// texture format.
     pub(crate) fn has_type_of(&self, dataset: &Dataset) -> bool {
         let voxel_type = |dataset: &Dataset| dataset.volume().samples().voxel_type();
         voxel_type(&self.dataset) == voxel_type(dataset)
     }
 
-    /// Brings the tables up to date. Returns how many were baked.
+    /// Updates the tables to a key. Returns the number of tables baked.
     ///
     /// # Errors
-    /// When memory is out.
+    /// Returns an error if memory is exhausted.
     pub(crate) fn refresh_tables(
         &mut self,
         context: &Context,
@@ -107,11 +107,11 @@ impl Loaded {
         Ok(baked)
     }
 
-    /// Has the tables know what they make of voxels, where the settings have these classified before they are spread;
-    /// some of it may have to be filled yet.
+    /// Assigns pre-classified voxels to the tables if the settings classify before reconstruction; new ones have yet
+    /// to be filled.
     ///
     /// # Errors
-    /// When memory is out.
+    /// Returns an error if memory is exhausted.
     pub(crate) fn refresh_materials(
         &mut self,
         context: &Context,
@@ -123,7 +123,7 @@ impl Loaded {
             return Ok(());
         }
         let baked = [&tables.eye, &tables.lighting].map(|table| Arc::clone(table.baked()));
-        // What earlier tables made of voxels leaves its room.
+        // Pre-classified voxels of earlier tables are reused for their textures.
         let (needed, mut left): (Vec<_>, Vec<_>) = std::mem::take(&mut self.materials)
             .into_iter()
             .partition(|known| baked.iter().any(|baked| known.is_of(baked)));
@@ -146,16 +146,17 @@ impl Loaded {
         Ok(())
     }
 
-    /// The voxels that a picture scatters.
+    /// Returns the voxels that the scattering engine splats.
     ///
     /// # Errors
-    /// When they are more than a buffer of the adapter can hold.
+    /// Returns an error if they exceed the adapter's largest buffer.
     pub(crate) fn voxels_for(
         &mut self,
         context: &Context,
         settings: &Settings,
     ) -> Result<Arc<ScatterVoxels>, GpuError> {
-        // Sums of nothing are zeros, but voxels of nothing are not splatted by themselves.
+        // Sheets of summed densities are 0 where no voxel is splatted; voxels splatted one by one are needed even at
+        // the lowest density, if that is visible.
         let by_voxel = settings.sampling.classification == Classification::Pre
             || settings.sampling.order == SheetOrder::EveryFootprint;
         let all = by_voxel && self.tables.value.shows_empty_space();
@@ -167,13 +168,13 @@ impl Loaded {
         Ok(fresh)
     }
 
-    /// Bytes of light volumes, of which pictures look up those of their lights, or one for all.
+    /// Returns the size of all attenuation volumes and the combined one, in bytes.
     pub(crate) fn light_bytes(&self) -> u64 {
         let combined = self.combined.as_ref().map_or(0, |combined| combined.value.bytes());
         combined + self.lights.iter().map(|light| light.value.bytes()).sum::<u64>()
     }
 
-    /// Bytes of all textures and buffers.
+    /// Returns the size of all textures and buffers, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         let voxels = self.voxels.as_ref().map_or(0, |voxels| voxels.bytes());
         let materials = self.materials.iter().map(|materials| materials.bytes()).sum::<u64>();

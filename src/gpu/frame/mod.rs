@@ -1,4 +1,4 @@
-//! One picture from request to pixels: what must be computed, in which steps, and what is kept.
+//! Frame: one picture from request to pixels, with the plan, the steps and the caches.
 
 pub(super) mod encode;
 pub(super) mod fit;

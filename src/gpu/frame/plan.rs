@@ -1,4 +1,4 @@
-//! Planning a picture: compares what it needs with what is there, and lists the steps that make the difference.
+//! Frame planning: compares the keys of a picture with the cached products and lists the missing steps.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -32,12 +32,12 @@ use crate::model::{Depth, SheetOrder};
 use crate::plan::{EyeKey, FloorKey, FrameKeys, LightKey, LitLights, Request, SliceOrder};
 
 impl Renderer {
-    /// Whether a picture would take no more than a display pass, or nothing at all.
+    /// Returns true if a picture needs no more than a display pass.
     pub fn is_drawn(&self, request: &Request, options: &RenderOptions) -> bool {
         let keys = FrameKeys::of(request, options);
         let role = self.targets.holding(&keys, shape(request, options));
-        // A product that comes to be shown beside the eye's picture is asked for here: the compiler sees to that.
-        // The eye's key names everything that went into its picture.
+        // Destructured without `..`, so that the compiler asks about each new product. The key of the eye covers
+        // everything that its picture depends on.
         let FrameKeys {
             volume: _,
             tables: _,
@@ -52,17 +52,17 @@ impl Renderer {
         role.is_some_and(|role| self.targets.get(role).floor.holds(floor))
     }
 
-    /// Starts a picture: finds what is stale and lists the steps.
+    /// Starts a picture: finds stale products and lists the steps.
     ///
     /// # Errors
-    /// When memory for it cannot be had. What was shown stays.
+    /// Returns an error if memory is exhausted; the displayed picture is kept.
     pub fn begin(
         &mut self,
         dataset: &Dataset,
         mut request: Request,
         options: &RenderOptions,
     ) -> Result<Job<'_>, GpuError> {
-        // The passes need not know of labels: keys are the same.
+        // Label settings are converted to transfer functions first, so that passes and keys need not know of labels.
         let drawn = match request.settings.as_drawn(dataset.volume()) {
             Cow::Owned(drawn) => Some(drawn),
             Cow::Borrowed(_) => None,
@@ -82,12 +82,12 @@ impl Renderer {
             Some(known) if known.holds(&keys.volume) && known.value.has_type_of(dataset) => known,
             other => {
                 if other.as_ref().is_some_and(|known| known.holds(&keys.volume)) {
-                    // The same numbers in another type, which differ in the last bits.
+                    // Equal numbers of another voxel type differ in the last bits.
                     self.targets.forget();
                 }
                 self.tools.pool.clear();
                 let start = Instant::now();
-                // What was made for a picture that was given up, or for another range of values, serves the next.
+                // Reuses parts of a volume whose picture was interrupted, or that shows another range of values.
                 let known = other.filter(|known| {
                     known.key().content_id == keys.volume.content_id && known.value.has_type_of(dataset)
                 });
@@ -145,17 +145,17 @@ impl Renderer {
             let around = (sky.key.as_ref(), bounces.key.as_ref());
             keys.eye = EyeKey::of(&request, options, &placed.keys, keys.combined.as_ref(), around);
             keys.floor = FloorKey::of(&request, &keys.eye);
-            // A preview may find that its lights are there at full resolution.
+            // A preview may find its light volumes at full resolution, and so a picture that is already drawn.
             role = self.targets.holding(&keys, shape);
         }
         let is_floor_drawn = role.is_some_and(|role| self.targets.get(role).floor.holds(&keys.floor));
         if role.is_some() && !is_floor_drawn && keys.floor.is_some() {
-            // The floor sees the sky, too, where all else is drawn.
+            // The floor needs the sky volume, too, even if the rest is drawn.
             let now = self.pictures;
             let wanted =
                 Wanted { context: &self.tools.context, request: &request, options, keys: &keys, now };
             sky = loaded.value.place_sky(&self.tools, wanted)?;
-            // And what there is of lights that have a size; rays find that of others.
+            // Area lights also have floor shadow maps; for other lights rays are cast.
             let has_map = lit.shadowed().iter().any(|lit| lit.light.area.is_some());
             if has_map && keys.combined.is_none() {
                 placed = place_lights(&self.tools, &mut loaded.value, wanted)?;
@@ -225,7 +225,7 @@ impl Renderer {
         if !target.shown.holds(&Some(shown_key(&keys))) {
             steps.push(Step::Display);
         }
-        // Shown at last, whether or not anything had to be done.
+        // Shows the target, even if nothing had to be drawn.
         steps.push(Step::Finish(Product::Shown));
 
         let bytes = self.targets.bytes() + value.bytes() + self.tools.pool.bytes();
@@ -257,9 +257,9 @@ impl Renderer {
     }
 }
 
-/// Finds or makes the light of a picture, in what an interrupted one has left.
+/// Finds or creates the light volumes of a picture, recycling those of an interrupted one.
 fn place_lights(tools: &Tools, loaded: &mut Loaded, wanted: Wanted<'_>) -> Result<PlacedLights, GpuError> {
-    // Bind groups would keep alive what has only served to fill it.
+    // Cached bind groups would keep the temporary volumes of the interrupted filling alive.
     let has_scratch = |key: &LightKey| key.samples() > 1 || key.has_colors();
     let is_half_filled = loaded.lights.iter().any(|light| !light.is_complete() && has_scratch(light.key()));
     let mut recyclable = loaded.take_unfinished();
@@ -271,13 +271,13 @@ fn place_lights(tools: &Tools, loaded: &mut Loaded, wanted: Wanted<'_>) -> Resul
     Ok(placed)
 }
 
-/// What is to be classified anew.
+/// Returns the steps that classify voxels.
 fn material_steps(tables: &Tables) -> Vec<Step> {
     let mut steps = Vec::new();
     let mut begun: Option<&Arc<Materials>> = None;
     for side in [Side::Eye, Side::Lighting] {
         let Some(materials) = &side.of(tables).materials else { continue };
-        // Mostly both are the same.
+        // Both tables usually share one set of voxels.
         if materials.is_complete() || begun.is_some_and(|begun| Arc::ptr_eq(begun, materials)) {
             continue;
         }
@@ -288,12 +288,12 @@ fn material_steps(tables: &Tables) -> Vec<Step> {
     steps
 }
 
-/// What a target for a request has room for.
+/// Returns the shape of the target for a request.
 fn shape(request: &Request, options: &RenderOptions) -> Shape {
     Shape { size: options.shown(request).size, samples: options.samples, deep: options.depth != Depth::Eight }
 }
 
-/// The lights of a picture, each with its volume.
+/// Returns the lights of a picture, each with its volume.
 pub(super) fn inputs<'a>(
     lit: &'a LitLights,
     slots: &[Option<usize>],
@@ -314,7 +314,7 @@ fn inputs_of<'a>(
     lights.iter().map(|lit| LightInput { lit, volume: volume_of(lit.index) }).collect()
 }
 
-/// The steps that bring a volume to the GPU.
+/// Returns the steps that upload a volume and compute its pyramid and gradients.
 fn upload_steps(volume: &GpuVolume) -> Vec<Step> {
     let slices = volume.volume.dims()[2];
     let each = volume.slices_per_step();
@@ -328,7 +328,7 @@ fn upload_steps(volume: &GpuVolume) -> Vec<Step> {
     steps
 }
 
-/// The steps that fill the combined light volume.
+/// Returns the steps that fill the combined light volume.
 fn combine_steps(bricks: Option<usize>) -> Vec<Step> {
     let Some(bricks) = bricks else { return Vec::new() };
     let firsts = (0..bricks).step_by(combine::BRICKS_PER_STEP);
@@ -338,10 +338,10 @@ fn combine_steps(bricks: Option<usize>) -> Vec<Step> {
     steps
 }
 
-/// The steps that draw the linear picture.
+/// Returns the steps that draw the linear picture.
 fn eye_steps(volume: &GpuVolume, eye: &EyePass, request: &Request, scatters: bool) -> Vec<Step> {
     let frame = eye.frame();
-    // With everything behind the eye there is no sheet: the gathering pass clears the picture.
+    // If everything lies behind the eye there is no sheet; the gathering pass then clears the picture.
     if !scatters || frame.slab_count == 0 {
         return vec![Step::Eye(0..frame.size[1])];
     }

@@ -1,4 +1,4 @@
-//! The renderer: what it keeps, and pictures at once.
+//! Renderer: cached products of one device, and blocking functions to draw a picture.
 
 use std::time::Instant;
 
@@ -13,36 +13,36 @@ use crate::gpu::{Context, GpuError, RenderOptions, ShaderLibrary};
 use crate::model::Settings;
 use crate::plan::{Request, VolumeKey};
 
-/// Renders volumes on one device. Every product is kept with the key of what it was made from, and serves all
-/// pictures that need the same.
+/// Renderer of volumes on one device. Each product is cached with the key of its inputs, and reused by all pictures
+/// with the same key.
 #[derive(Debug)]
 pub struct Renderer {
     pub(crate) tools: Tools,
-    /// The volume on the GPU by its content and the values that it shows, complete when it is uploaded.
+    /// Volume on the GPU, by content and shown values; complete when it is uploaded.
     pub(crate) loaded: Option<Cached<VolumeKey, Loaded>>,
     pub(crate) targets: Targets,
-    /// How often the light volume of each light of the settings was filled.
+    /// Number of times that the light volume of each light in the settings was filled.
     pub(crate) fills: Vec<u64>,
-    /// Counts pictures.
+    /// Number of pictures started.
     pub(crate) pictures: u64,
     pub(crate) report: Report,
-    /// For pictures that are timed; where the adapter has one.
+    /// Clock for timed pictures; `None` if the adapter has no timestamps.
     pub(crate) gpu_clock: Option<Clock>,
 }
 
 impl Renderer {
-    /// A renderer on a device.
+    /// Creates a renderer on a device.
     ///
     /// # Errors
-    /// When not even one texel can be had.
+    /// Returns an error if memory is exhausted.
     pub fn new(context: &Context) -> Result<Self, GpuError> {
         Self::with_shaders(context, ShaderLibrary::new(context))
     }
 
-    /// A renderer with shaders of one's own, which tests damage on purpose.
+    /// Creates a renderer with the given shaders, which tests damage on purpose.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// Same as [`Self::new`].
     pub fn with_shaders(context: &Context, shaders: ShaderLibrary) -> Result<Self, GpuError> {
         Ok(Self {
             tools: Tools::new(context, shaders)?,
@@ -55,30 +55,30 @@ impl Renderer {
         })
     }
 
-    /// The device.
+    /// Returns the device context.
     pub fn context(&self) -> &Context {
         &self.tools.context
     }
 
-    /// Its pipelines, for other renderers on the device.
+    /// Returns the shader library, to share its pipelines with other renderers on the device.
     pub fn shaders(&self) -> ShaderLibrary {
         self.tools.shaders.clone()
     }
 
-    /// The volume of the last picture, with the values at densities 0 and 1 that it showed.
+    /// Returns the volume of the last picture, with the values at densities 0 and 1 that it showed.
     pub fn dataset(&self) -> Option<&Dataset> {
         self.loaded.as_ref().map(|loaded| &loaded.value.dataset)
     }
 
-    /// What the last picture took.
+    /// Returns times and counts of the last picture.
     pub fn report(&self) -> &Report {
         &self.report
     }
 
-    /// Makes a picture and waits for it.
+    /// Renders a picture and reads it back, with its linear light.
     ///
     /// # Errors
-    /// When the GPU cannot do it.
+    /// Returns an error if the device fails or memory is exhausted.
     pub fn render(
         &mut self,
         dataset: &Dataset,
@@ -93,11 +93,11 @@ impl Renderer {
         Ok(Picture { size, light, shown })
     }
 
-    /// Makes a picture, waits for it and reads back what is shown, as [`Self::read_shown`] does, but not its
-    /// light, which takes four times the memory.
+    /// Renders a picture and reads back the displayed result like [`Self::read_shown`], without the linear light,
+    /// which takes four times the memory.
     ///
     /// # Errors
-    /// When the GPU cannot do it.
+    /// Returns an error if the device fails or memory is exhausted.
     pub fn render_shown(
         &mut self,
         dataset: &Dataset,
@@ -115,7 +115,7 @@ impl Renderer {
     /// Draws a picture and waits until it is complete, without reading it back.
     ///
     /// # Errors
-    /// When the GPU cannot do it.
+    /// Returns an error if the device fails or memory is exhausted.
     pub fn draw(
         &mut self,
         dataset: &Dataset,
@@ -144,7 +144,7 @@ impl Renderer {
         // A quarter of a megapixel per submission stays below driver watchdogs on slow GPUs.
         job.set_band((1 << 18) / options.window(job.request()).size[0].max(1));
         let interrupt = Interrupt::here();
-        // Bounds what is queued: little where somebody may want to stop.
+        // Limits the queued submissions: few if the work may be interrupted.
         let most = if interrupt.is_possible() { 4 } else { 64 };
         let mut unfinished = 0;
         while job.step()? {
@@ -159,18 +159,17 @@ impl Renderer {
         context.wait()
     }
 
-    /// Forgets all that is on the GPU: after an error, some of it may not be what its key says. It is also the most
-    /// that can be given back.
+    /// Drops everything on the GPU. After an error, products may not match their keys. Also frees the most memory.
     pub fn forget_everything(&mut self) {
         self.loaded = None;
         self.tools.pool.clear();
         self.targets.forget();
-        // What was recorded with it may still complain.
+        // Pending work may still report errors about dropped resources.
         self.tools.context.wait().ok();
     }
 
-    /// Forgets finished pictures, so that the next one is drawn anew whatever it shows: for measurements, and for
-    /// tests that the same picture is the same twice.
+    /// Invalidates finished pictures, so that the next one is drawn again: for measurements, and for tests of
+    /// determinism.
     pub fn forget_pictures(&mut self) {
         self.targets.forget();
     }

@@ -1,4 +1,4 @@
-//! Pieces of work for one picture, each short enough for a watchdog and a waiting user.
+//! Steps of a picture, each short enough for driver watchdogs and a responsive window.
 
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -8,58 +8,58 @@ use crate::gpu::eye::floor;
 use crate::gpu::resources::part::Part;
 use crate::gpu::volume::transfer_tables::{Table, Tables};
 
-/// What a step belongs to, for reports and for the status bar.
+/// Stage of the picture that a step belongs to, for reports and for the status bar.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
-    /// Density, on its way to the GPU.
+    /// Upload of density to the GPU.
     Upload,
-    /// The pyramid of prefiltered volumes.
+    /// Pyramid of prefiltered density.
     Pyramid,
-    /// Sheets of a light.
+    /// March of light through its sheets.
     LightMarch,
-    /// Sheets into the light volume.
+    /// Back-projection of sheets into the light volume.
     LightBackproject,
-    /// Rays from the voxels of the light volume.
+    /// Ray casting from the voxels of the light volume.
     LightRaycast,
-    /// Light of the sky.
+    /// Computation of sky visibility.
     Sky,
-    /// Light that bounces.
+    /// Computation of scattered light.
     Bounces,
-    /// The picture.
+    /// Linear picture and floor.
     Eye,
     /// Display colours of the picture.
     Display,
 }
 
-/// A piece of one half of a light pass.
+/// Step of the march or back-projection of a light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct LightStep {
     /// Index of the light build.
     pub build: usize,
-    /// Which of the colours of light, where each is followed by itself.
+    /// Index of the light's colour, if colours are followed separately.
     pub color: Option<usize>,
-    /// Index of its view.
+    /// Index of the view in the build.
     pub view: usize,
-    /// First slab of the chunk.
+    /// Index of the chunk's first slab.
     pub begin: u32,
-    /// Which part of the tiles or bricks.
+    /// Part of the chunk's tiles or bricks.
     pub part: Part,
 }
 
-/// Rays from the voxels of some bricks to a light.
+/// Step that casts rays from the voxels of some bricks to a light.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct RaycastStep {
     /// Index of the light build.
     pub build: usize,
-    /// Which of the colours of light, where each is followed by itself.
+    /// Index of the light's colour, if colours are followed separately.
     pub color: Option<usize>,
-    /// Number of the point of the light.
+    /// Index of the point on the light.
     pub point: usize,
-    /// Which of its bricks.
+    /// Range of the build's bricks.
     pub bricks: Range<usize>,
 }
 
-/// A transfer function.
+/// Transfer function: of the eye or of light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Side {
     Eye,
@@ -67,7 +67,7 @@ pub(super) enum Side {
 }
 
 impl Side {
-    /// Its table.
+    /// Returns the table of this transfer function.
     pub(super) fn of(self, tables: &Tables) -> &Table {
         match self {
             Self::Eye => &tables.eye,
@@ -76,18 +76,18 @@ impl Side {
     }
 }
 
-/// Something that a picture needs, and that is kept.
+/// Product that a picture needs and that is cached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Product {
     Volume,
-    /// What a table makes of voxels.
+    /// Pre-classified voxels of a table.
     Materials(Side),
-    /// The volume that a light build fills.
+    /// Light volume of the build with this index.
     Light(usize),
     CombinedLight,
-    /// The volume of the sky's visibility.
+    /// Volume of sky visibility.
     Sky,
-    /// The volume of light that has bounced.
+    /// Volume of scattered light.
     Bounces,
     /// Linear light of the volume.
     Picture,
@@ -95,51 +95,51 @@ pub(super) enum Product {
     Shown,
 }
 
-/// A piece of work for one submission.
+/// Unit of work for one submission.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Step {
-    /// Slices of the volume.
+    /// Uploads slices of the volume.
     Upload(Range<usize>),
-    /// Slices of the coarsest level of what is there.
+    /// Uploads slices of the coarsest level of the presence texture, with those of the finer levels.
     Presence(Range<usize>),
-    /// Level, and which of its bricks.
+    /// Prefilters bricks of one pyramid level.
     Pyramid(u32, Range<usize>),
-    /// Level, and which of its bricks.
+    /// Computes gradients in bricks of one pyramid level.
     Gradients(u32, Range<usize>),
-    /// By which table voxels are classified, level, and which of its bricks.
+    /// Classifies voxels by a table, in bricks of one pyramid level.
     Materials(Side, u32, Range<usize>),
     March(LightStep),
     Backproject(LightStep),
     Raycast(RaycastStep),
-    /// The volumes of points of a light join those before: index of the light build, the colour, and the last of them.
+    /// Averages the latest batch of points: index of the light build, colour, and last point.
     Average {
         build: usize,
         color: Option<usize>,
         point: usize,
     },
-    /// The volumes of a light's colours become one: index of the light build.
+    /// Merges the volumes of red, green and blue light: index of the light build.
     JoinColors(usize),
-    /// Bricks of the volume in which all lights are combined.
+    /// Fills bricks of the combined light volume.
     Combine(Range<usize>),
-    /// What attenuates the light of a sky.
+    /// Computes the blocks of extinction for sky visibility.
     SkyBlocks,
-    /// A batch of directions of a sky.
+    /// Sweeps a batch of directions for sky visibility.
     SkyBatch(usize),
-    /// A piece of the filling of a volume of bounced light.
+    /// Runs a step of filling a scattered-light volume.
     Bounce(BounceStep),
-    /// Rows of the picture.
+    /// Draws rows of the picture.
     Eye(Range<u32>),
-    /// Slabs of the eye's scattered sheets.
+    /// Draws slabs of the eye's scattered sheets.
     ScatterEye(Range<u32>),
-    /// Rows of the floor.
+    /// Draws rows of the floor.
     Floor(Range<u32>),
     Display,
-    /// Everything of a product has been recorded; no work of its own.
+    /// Marks a product whose steps have all been recorded as complete; records no commands.
     Finish(Product),
 }
 
 impl Step {
-    /// What it belongs to; `None` of what is no work.
+    /// Returns the stage for reports; `None` for steps without commands.
     pub(super) fn stage(&self) -> Option<Stage> {
         Some(match self {
             Self::Upload(_) | Self::Presence(_) => Stage::Upload,
@@ -158,7 +158,7 @@ impl Step {
     }
 }
 
-/// Cuts rows that are still to be drawn into bands of `rows`.
+/// Splits rows that are still to be drawn into bands of `rows`.
 pub(super) fn cut_into_bands(steps: &mut VecDeque<Step>, rows: u32) {
     let mut cut = VecDeque::with_capacity(steps.len());
     for step in steps.drain(..) {
@@ -171,7 +171,7 @@ pub(super) fn cut_into_bands(steps: &mut VecDeque<Step>, rows: u32) {
     *steps = cut;
 }
 
-/// Adds bands of rows. Adjoining bands are joined again when the band grows.
+/// Appends bands of rows. Adjacent bands are merged again when the band height grows.
 fn cut_rows(steps: &mut VecDeque<Step>, range: Range<u32>, rows: u32, step: fn(Range<u32>) -> Step) {
     let Range { mut start, end } = range;
     if let Some(Step::Eye(last) | Step::Floor(last)) = steps.back()

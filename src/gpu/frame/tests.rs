@@ -1,4 +1,4 @@
-//! Tests of what the renderer does when memory is refused, for whichever texture or buffer.
+//! Out-of-memory tests of the renderer, with a failure injected at each texture or buffer allocation.
 
 use crate::data::load::{LoadControl, LoadOptions};
 use crate::data::{Dataset, open};
@@ -10,11 +10,14 @@ use crate::model::{Engine, LightPlace, LightStorage, Settings, SkyMode, auto, ke
 
 const SIZE: [u32; 2] = [24, 18];
 
-/// How far a picture without the texture of gradients may be from that with it, in steps of a byte: where kernels are
-/// stretched, its normals are interpolated, and here pixels are as large as voxels. Seen are 11.
+/// Maximum difference, in steps of a byte, of a picture without the gradient texture from one with it.
+///
+/// Where kernels are stretched, normals from the texture are interpolated, and here pixels are as large as voxels.
+/// The largest difference seen is 11.
 const LEFT_OUT: u8 = 16;
 
-/// The picture of a renderer that has had it refused the `k`-th allocation from now on; and whether it came to that.
+/// Runs `draw` with the `k`-th allocation from now on refused. Returns the result, and `true` if that allocation was
+/// reached.
 fn with_refusal(
     k: u64,
     draw: impl FnOnce() -> Result<Vec<u8>, GpuError>,
@@ -27,8 +30,8 @@ fn with_refusal(
     (result, came)
 }
 
-/// Every refusal is an error that says so, and neither a panic nor a picture that is not right; and the next picture
-/// of the same renderer is what it would have been. Of the allocations one of so many is tried.
+/// Checks that every refused allocation gives an out-of-memory error, neither a panic nor a wrong picture, and that
+/// the renderer's next picture is right. Tries each `every`-th allocation.
 fn refused_anywhere(settings: &Settings, dataset: &Dataset, every: usize) {
     let context = Context::headless().expect("an adapter");
     let shaders = ShaderLibrary::new(&context);
@@ -49,7 +52,7 @@ fn refused_anywhere(settings: &Settings, dataset: &Dataset, every: usize) {
                 refused += 1;
                 assert!(again == expected, "allocation {k}");
             }
-            // It went without what was refused, and goes on so.
+            // The renderer did without the refused texture of gradients, and continues to.
             Ok(picture) => {
                 let most = picture.iter().zip(&expected).map(|(a, b)| a.abs_diff(*b)).max();
                 assert!(most <= Some(LEFT_OUT) && again == picture, "allocation {k}: {most:?}");
@@ -64,7 +67,7 @@ fn scene() -> (Dataset, Settings) {
     let volume = open("builtin:chair:16", &LoadOptions::default(), &LoadControl::new()).expect("a volume");
     let dataset = Dataset::new(volume);
     let mut settings = auto::first_settings(dataset.volume(), dataset.histogram());
-    // Near the eye: grazing light makes more of small differences of normals.
+    // Lights near the eye: grazing light amplifies small differences of normals.
     settings.lights =
         key_and_fill(&settings.camera, LightPlace { aside_deg: 40.0, round_deg: -45.0 }).to_vec();
     (dataset, settings)
@@ -78,7 +81,7 @@ fn memory_can_be_refused_anywhere_in_a_gathered_picture() {
     refused_anywhere(&settings, &dataset, 1);
 }
 
-/// Each slab takes buffers of its own, and they are alike.
+/// Each slab takes buffers of its own and in the same order, so a sample of the allocations suffices.
 #[test]
 fn memory_can_be_refused_here_and_there_in_a_scattered_picture() {
     let (dataset, mut settings) = scene();
@@ -86,7 +89,7 @@ fn memory_can_be_refused_here_and_there_in_a_scattered_picture() {
     refused_anywhere(&settings, &dataset, 5);
 }
 
-/// The light of a sky has textures and buffers of its own.
+/// Sky visibility and scattered light have textures and buffers of their own.
 #[test]
 fn memory_can_be_refused_anywhere_under_a_sky() {
     let (dataset, mut settings) = scene();

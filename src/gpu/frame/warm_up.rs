@@ -1,5 +1,5 @@
-//! Makes the pipelines that the first pictures and previews will need, ahead of time: each can take
-//! a driver tens of milliseconds, which a window must not wait for.
+//! Pre-compilation of the pipelines for the first pictures and previews: each can take a driver tens of milliseconds,
+//! which would stall the window.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -12,7 +12,7 @@ use crate::gpu::pipelines::variant::{LightCount, Only, Variant};
 use crate::gpu::{GpuError, ShaderLibrary};
 use crate::model::{ClipPlane, Cuts, Kernel, Sampling, Settings, Shadows, Slabs};
 
-/// Lights of a first look.
+/// Number of lights in a first look.
 const FIRST_LIGHTS: LightCount = LightCount { all: 2, shadowed: 1 };
 
 /// Kernels and slabs of previews and of pictures.
@@ -20,10 +20,10 @@ const LOOKS: [(Kernel, Slabs); 2] =
     [(Kernel::Prefiltered, Slabs::Preintegrated), (Kernel::BSpline, Slabs::ByNeed)];
 
 impl ShaderLibrary {
-    /// Makes the usual variants of every shader, until `stop`. To be called on a thread of its own.
+    /// Compiles the usual variants of every shader, until `stop` is set. To be called on a separate thread.
     ///
     /// # Errors
-    /// When the driver refuses a shader.
+    /// Returns an error if the driver rejects a shader.
     pub fn warm_up(&self, stop: &AtomicBool) -> Result<(), GpuError> {
         for shader in ["volume/prefilter.wgsl", "volume/downsample.wgsl", "volume/gradients.wgsl"] {
             self.warm(&Only(shader), stop)?;
@@ -40,11 +40,11 @@ impl ShaderLibrary {
         Ok(())
     }
 
-    /// Makes variants that the user may ask for later: the floor, and what remains after cuts. To be called on a
-    /// thread of its own when nothing else is waited for.
+    /// Compiles variants that the user may need later: the floor, and cuts. To be called on a separate thread while
+    /// the program is idle.
     ///
     /// # Errors
-    /// As [`Self::warm_up`].
+    /// Same as [`Self::warm_up`].
     pub fn warm_up_rest(&self, stop: &AtomicBool) -> Result<(), GpuError> {
         for (kernel, _) in LOOKS {
             let shadows = Shadows { kernel, ..Shadows::default() };
@@ -55,7 +55,7 @@ impl ShaderLibrary {
         self.warm_up_passes(&Cuts { plane, ..Cuts::default() }, stop)
     }
 
-    /// The passes of a splatted picture, of whole volumes or of what remains of them.
+    /// Compiles the passes of a splatted picture, of the whole volume or with cuts.
     fn warm_up_passes(&self, cuts: &Cuts, stop: &AtomicBool) -> Result<(), GpuError> {
         for is_stretched in [false, true] {
             for (kernel, slabs) in LOOKS {

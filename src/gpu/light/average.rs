@@ -1,4 +1,4 @@
-//! Lights that have a size: the mean of the volumes of point lights on them.
+//! Area lights: average of the attenuation volumes of point lights on the area.
 
 use super::volume::LightVolume;
 use crate::gpu::pipelines::binding::{buffer, view_of};
@@ -9,47 +9,48 @@ use crate::gpu::volume::Gpu;
 use crate::gpu::volume::listed_bricks::{self, Listed};
 use crate::gpu::{Context, GpuError};
 
-/// Volumes that are added at once: sums are read and written as much less often.
+/// Number of volumes added per pass; the sum is read and written once for all of them.
 const ADDED: usize = 4;
 
-/// What only the filling of such a light's volume needs.
+/// Temporary volumes for filling the volume of an area light.
 #[derive(Debug)]
 pub(crate) struct Average {
-    /// The volumes of the points that are followed.
+    /// Attenuation volumes of the points in the current batch.
     points: [LightVolume; ADDED],
-    /// Sums of those before and of those with them, which take turns.
+    /// Partial sums, read from one and written to the other in turn.
     sums: [LightVolume; 2],
-    /// How many points there are.
+    /// Number of points on the area light.
     count: usize,
 }
 
 impl Average {
-    /// Makes room for the points of a light whose volume is `whole`.
+    /// Allocates the temporary volumes for a light whose volume is `whole`.
     ///
     /// # Errors
-    /// When memory is out.
+    /// Returns an error if memory is exhausted.
     pub(crate) fn new(context: &Context, whole: &LightVolume, count: usize) -> Result<Self, GpuError> {
         let sum = || whole.alike(context, wgpu::TextureFormat::R32Float);
         let point = || whole.alike(context, context.storage_format);
         Ok(Self { points: [point()?, point()?, point()?, point()?], sums: [sum()?, sum()?], count })
     }
 
-    /// Bytes of all of them.
+    /// Returns the size of all temporary volumes, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         self.points.iter().chain(&self.sums).map(LightVolume::bytes).sum()
     }
 
-    /// The volume of a point.
+    /// Returns the volume that a point's light is computed in.
     pub(crate) fn point(&self, index: usize) -> &LightVolume {
         &self.points[index % ADDED]
     }
 
-    /// Whether the volumes that are there are to be added when a point's has been filled.
+    /// Returns true if a batch is complete with this point, so that its volumes are to be added.
     pub(crate) fn is_due(&self, index: usize) -> bool {
         index % ADDED == ADDED - 1 || index + 1 == self.count
     }
 
-    /// Adds the volumes of the points up to `index` in the listed bricks; after the last the light's own volume is filled.
+    /// Adds the volumes of the batch that ends with point `index`, in the listed bricks; the last batch writes the
+    /// average into the light's own volume.
     pub(crate) fn add(
         &self,
         gpu: Gpu<'_>,
@@ -94,10 +95,10 @@ impl Average {
     }
 }
 
-/// Names of the volumes of points.
+/// Names of the point volumes in the shader.
 const POINTS: [&str; ADDED] = ["point_0", "point_1", "point_2", "point_3"];
 
-/// What tells one pipeline of the mean from another.
+/// Pipeline variant of the averaging pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct AverageVariant {
     added: usize,

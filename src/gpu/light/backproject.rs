@@ -1,4 +1,4 @@
-//! Reverse half of the light pass: splats the sheets back into the light volume.
+//! Back-projection, the second half of the light pass: splats the sheets back into the light volume.
 
 use std::ops::Range;
 
@@ -20,21 +20,22 @@ use crate::math::SceneSpace;
 use crate::model::{Kernel, Quadrature, ReverseKernel, Shadows};
 use crate::plan::{LightView, MarchTiles};
 
-/// What each chunk of slabs has to do.
+/// Work for each chunk of slabs: bricks to back-project and tiles to march.
 #[derive(Debug)]
 pub(crate) struct Schedule {
-    /// The bricks of a light volume, by the chunk that completes them.
+    /// Bricks of the light volume by the chunk that completes them.
     chunks: Vec<Vec<Listed>>,
-    /// The tiles of the sheets that are marched.
+    /// Tiles of the sheets that are marched.
     tiles: MarchTiles,
 }
 
 impl Schedule {
-    /// Finds for every brick to be filled the chunks in which any of its voxels gets its last sheet, and the
-    /// tiles in which sheets are read: all of them if `reach` is [`EVERYWHERE`].
+    /// Lists for each chunk the bricks in which any voxel receives its last sheet, and the tiles in which sheets are
+    /// read: all of them if `reach` is [`EVERYWHERE`].
     ///
-    /// `reach`: cells beyond those to be filled that the reverse kernel reads. For a floor what comes out of all sheets is read,
-    /// too; on its way it changes where bricks are filled, since all that attenuates light is in one.
+    /// `reach` is the number of cells beyond the filled ones that the reverse kernel reads. For a floor the
+    /// transmittance behind all sheets is read, too; in between it only changes where bricks are filled, since
+    /// everything that attenuates light lies in one of them.
     pub(crate) fn new(
         scene: &SceneSpace,
         view: &LightView,
@@ -58,15 +59,16 @@ impl Schedule {
         Self { chunks, tiles }
     }
 
-    /// The tiles that a part of the march through a chunk takes.
+    /// Returns the tiles of a chunk that belong to a part of its march.
     pub(crate) fn tiles(&self, chunk: usize, part: Part) -> &[u32] {
         part.take(self.tiles.of_chunk(chunk))
     }
 }
 
-/// Where sheets are read for the bricks of a light volume: around each, in index space.
+/// Returns the boxes, in index space, around the bricks of a light volume in which sheets are read.
 fn read_boxes(light: &LightVolume, reach: i32) -> impl Iterator<Item = [DVec3; 2]> + '_ {
-    // Cells are pairs of voxels, and samples belong to the cell in which they lie (`density/cells.wgsl`).
+    // Cells are pairs of voxels along each axis, and samples belong to the cell in which they lie
+    // (`density/cells.wgsl`).
     let beyond = DVec3::splat(2.0 * f64::from(reach));
     let edge = (BRICK_EDGE * light.divisor) as f64;
     light.filled.bricks().map(move |(brick, _)| {
@@ -75,7 +77,7 @@ fn read_boxes(light: &LightVolume, reach: i32) -> impl Iterator<Item = [DVec3; 2
     })
 }
 
-/// The first and the last slab that completes any voxel of a brick.
+/// Returns the first and the last slab that completes any voxel of a brick.
 fn final_slabs(scene: &SceneSpace, view: &LightView, light: &LightVolume, brick: [usize; 3]) -> (u32, u32) {
     let step = light.divisor as f64;
     let corner = |side: usize| {
@@ -89,35 +91,36 @@ fn final_slabs(scene: &SceneSpace, view: &LightView, light: &LightVolume, brick:
     let depths = (0..8).map(|side| (corner(side) - view.anchor).dot(view.axes.z_axis));
     let (near, far) =
         depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(near, far), z| (near.min(z), far.max(z)));
-    // One slab of slack each for the quadrature points and the rounding of the shader.
+    // One slab of slack each for the quadrature points and for the rounding of the shader.
     let final_slab = |depth: f64| (depth - frame.first_depth) / frame.slab + 2.0 * view.kernel_slabs() - 0.5;
     let last = f64::from(frame.slab_count.max(1) - 1);
     let clamp = |slab: f64| slab.clamp(0.0, last) as u32;
     (clamp(final_slab(near).floor() - 1.0), clamp(final_slab(far).floor() + 1.0))
 }
 
-/// Light axes from index space: x and y in pixels of the anchor plane, z in scene units.
+/// Returns the map from index space to light axes: x and y in pixels of the anchor plane, z in scene units.
 fn light_from_index(scene: &SceneSpace, view: &LightView) -> DAffine3 {
     let to_light = DMat3::from_diagonal(DVec3::new(1.0 / view.frame.pitch, 1.0 / view.frame.pitch, 1.0))
         * view.axes.transpose();
     DAffine3 { matrix3: to_light, translation: -(to_light * view.anchor) } * scene.scene_from_index
 }
 
-/// What tells one pipeline of the back-projection from another.
+/// Pipeline variant of the back-projection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct BackprojectVariant {
     reconstruction: Reconstruction,
     first_touch: bool,
-    /// Kernels are wider than a pixel or a slab somewhere.
+    /// `true` if kernels are wider than a pixel or a slab somewhere.
     is_wide: bool,
-    /// A software driver's vector does a whole brick, and what comes before its first voxel once.
+    /// Size of a workgroup. A software driver's 8-lane vector processes a whole brick, and computes what precedes its
+    /// first voxel once.
     lanes: u32,
 }
 
 impl BackprojectVariant {
-    /// The back-projection with kernels that are wider than a pixel or a slab somewhere or not.
+    /// Creates the variant; `is_wide` tells if kernels are wider than a pixel or a slab somewhere.
     pub(crate) fn of(context: &Context, shadows: &Shadows, is_wide: bool) -> Self {
-        // The prefiltered kernel is a tent where it spreads.
+        // The prefiltered kernel is a tent when it is spread.
         let kernel = match shadows.reverse_kernel {
             ReverseKernel::Tent => Kernel::Prefiltered,
             ReverseKernel::Forward => shadows.kernel,
@@ -147,7 +150,7 @@ impl Variant for BackprojectVariant {
     }
 }
 
-/// Writes the voxels that some slabs complete: those in a part of the bricks.
+/// Back-projects some slabs into the voxels that they complete, within a part of the bricks.
 #[expect(clippy::too_many_arguments, reason = "each is another thing: who, what, how, where from, where to")]
 pub(crate) fn backproject(
     gpu: Gpu<'_>,

@@ -1,4 +1,4 @@
-//! Coloured shadows: red, green and blue light are followed one after the other, and their volumes become one.
+//! Coloured shadows: attenuation volumes of red, green and blue light, computed in turn and merged into one.
 
 use super::volume::LightVolume;
 use crate::gpu::pipelines::binding::{Named, view_of};
@@ -9,31 +9,31 @@ use crate::gpu::volume::listed_bricks::{self, Listed};
 use crate::gpu::{Context, GpuError};
 use crate::model::COLORS;
 
-/// What only the filling of a volume of three colours needs.
+/// Temporary volumes for filling an attenuation volume of three colours.
 #[derive(Debug)]
 pub(crate) struct ColorPlanes([LightVolume; COLORS]);
 
 impl ColorPlanes {
-    /// Makes room for the colours of a light whose volume is `whole`.
+    /// Allocates the temporary volumes for a light whose volume is `whole`.
     ///
     /// # Errors
-    /// When memory is out.
+    /// Returns an error if memory is exhausted.
     pub(crate) fn new(context: &Context, whole: &LightVolume) -> Result<Self, GpuError> {
         let plane = || whole.alike(context, context.storage_format);
         Ok(Self([plane()?, plane()?, plane()?]))
     }
 
-    /// Bytes of all of them.
+    /// Returns the size of all temporary volumes, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         self.0.iter().map(LightVolume::bytes).sum()
     }
 
-    /// The volume of a colour.
+    /// Returns the volume of a colour: 0 red, 1 green, 2 blue.
     pub(crate) fn plane(&self, color: usize) -> &LightVolume {
         &self.0[color % COLORS]
     }
 
-    /// Joins them in the listed bricks of the light's own volume.
+    /// Merges the three volumes into the light's own volume, in the listed bricks.
     pub(crate) fn join(
         &self,
         gpu: Gpu<'_>,

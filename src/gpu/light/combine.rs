@@ -1,4 +1,4 @@
-//! Combines the light volumes of several lights into one of diffuse light.
+//! Combined light: one volume with the diffuse light of all shadowed lights.
 
 use std::sync::Arc;
 
@@ -14,10 +14,10 @@ use crate::gpu::volume::{Gpu, texture_3d};
 use crate::gpu::{Context, GpuError};
 use crate::plan::CellSet;
 
-/// Bricks per submission: 2048 × 512 voxels take a software adapter some 0.1 s.
+/// Number of bricks per submission: 2048 × 512 voxels take a software adapter some 0.1 s.
 pub(crate) const BRICKS_PER_STEP: usize = 2048;
 
-/// What tells one pipeline that combines lights from another.
+/// Pipeline variant of the pass that combines lights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct CombineVariant {
     shading: ShadingVariant,
@@ -36,22 +36,22 @@ impl Variant for CombineVariant {
     }
 }
 
-/// The diffuse light of all lights that cast shadows.
+/// Volume with the sum of the diffuse light of all lights that cast shadows.
 #[derive(Debug)]
 pub(crate) struct CombinedLight {
     dims: [usize; 3],
     divisor: usize,
-    /// Linear RGB.
+    /// View of the texture of linear RGB.
     pub view: wgpu::TextureView,
-    /// Cells that hold values.
+    /// Cells that are filled with values.
     pub filled: Arc<CellSet>,
 }
 
 impl CombinedLight {
-    /// Makes the texture for light volumes like this one; nothing is filled yet.
+    /// Creates the texture with the dimensions of the light volumes; nothing is filled yet.
     ///
     /// # Errors
-    /// When memory is out.
+    /// Returns an error if memory is exhausted.
     pub(crate) fn new(context: &Context, like: &LightVolume) -> Result<Self, GpuError> {
         let texture = context.texture(&texture_3d(
             "CombinedLight::texture",
@@ -63,17 +63,17 @@ impl CombinedLight {
         Ok(Self { dims: like.dims, divisor: like.divisor, view, filled: Arc::clone(&like.filled) })
     }
 
-    /// Index space to texture coordinates: (p + ½) × lookup.
+    /// Returns the scale from index space to texture coordinates: (p + ½) × lookup.
     pub(crate) fn lookup(&self) -> [f32; 3] {
         self.dims.map(|n| 1.0 / (n * self.divisor) as f32)
     }
 
-    /// Bytes of its texture.
+    /// Returns the size of the texture, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         8 * self.dims.iter().map(|&n| n as u64).product::<u64>()
     }
 
-    /// Fills the listed bricks from the volumes of some lights, which are those of `eye` and `shading`.
+    /// Fills the listed bricks from the volumes of `lights`, which are those of `eye` and `shading`.
     pub(crate) fn fill(
         &self,
         gpu: Gpu<'_>,
@@ -89,7 +89,7 @@ impl CombinedLight {
         let attenuation: Vec<_> =
             lights.iter().filter_map(|input| input.volume).map(|volume| &volume.view).collect();
         let Gpu { shaders, volume, .. } = gpu;
-        // Neither the sky nor what has bounced is a light that casts shadows.
+        // The sky and scattered light are not part of the combined light.
         let shading = ShadingVariant { sky: SkyVariant::None, has_bounces: false, ..shading };
         let pipeline = shaders.pipeline(&CombineVariant { shading, ends: volume.ends_of_all() })?;
         let eye = gpu.uniform("Combine::eye", eye);

@@ -1,5 +1,7 @@
-//! What of a light that has a size gets to the floor, as a map of it: rays from every pixel of the floor to every point of
-//! the light would take as long as pictures do, for each of them.
+//! Floor shadow map of an area light: its transmittance at points of the floor.
+//!
+//! Without the map, rays from every pixel of the floor to every point of the light would take as long as a picture
+//! for each point.
 
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 
@@ -13,43 +15,45 @@ use crate::gpu::{Context, GpuError};
 use crate::model::{LightKind, SceneLight};
 use crate::plan::{FloorPlace, FloorTexels, LightView};
 
-/// Texels along an edge: as fine as the light volume, within these. The most is two voxels of 256 to the scene's two units,
-/// and with the least a texel is a fortieth of a unit.
+/// Range of the map's texels along an edge; within it, texels are as large as the blocks of the light volume.
+///
+/// The maximum is two voxels of 256 across the scene's two units; with the minimum a texel is a fortieth of a unit.
 const EDGES: std::ops::RangeInclusive<u32> = 256..=384;
 
-/// A light that so few points stand for, as while it is dragged, has the least: its map must not hold up the hand.
+/// Number of points up to which the map has the minimum resolution, as while the light is dragged: the map must not
+/// delay the interaction.
 const FEW_POINTS: u32 = 16;
 
-/// What of a light gets to the floor.
+/// Map of an area light's transmittance at the floor.
 #[derive(Debug)]
 pub(crate) struct FloorShadow {
-    /// Where the floor lies.
+    /// Extent of the floor that the map covers.
     pub place: FloorPlace,
     pub view: wgpu::TextureView,
-    /// Texels along an edge.
+    /// Number of texels along an edge.
     edge: u32,
-    /// Of the views before, a float for each texel.
+    /// Sums over the views added so far, a float for each texel.
     sums: wgpu::Buffer,
 }
 
-/// One of the views of the points of a light.
+/// View from a point on an area light: points outside the volume have one, points inside or close by have six.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ViewOfPoint<'a> {
     pub point: &'a SceneLight,
     pub geometry: &'a LightView,
-    /// Its number, and how many there are.
+    /// Index of the view, and the number of views of all points.
     pub index: usize,
     pub count: usize,
-    /// Points of the light.
+    /// Number of points on the light.
     pub points: usize,
 }
 
 impl FloorShadow {
-    /// Makes the texture, of a light volume whose blocks are so long in scene units, for so many points; nothing is filled
-    /// yet.
+    /// Creates the texture, for a light volume with blocks of edge `block` in scene units, and for this number of
+    /// points; nothing is filled yet.
     ///
     /// # Errors
-    /// When memory is out.
+    /// Returns an error if memory is exhausted.
     pub(crate) fn new(
         context: &Context,
         place: FloorPlace,
@@ -71,14 +75,14 @@ impl FloorShadow {
         Ok(Self { place, view: texture.create_view(&wgpu::TextureViewDescriptor::default()), edge, sums })
     }
 
-    /// Bytes of texture and sums.
+    /// Returns the size of texture and sums, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         let texel = u64::from(self.view.texture().format().block_copy_size(None).unwrap_or(4));
         self.sums.size() + texel * u64::from(self.edge) * u64::from(self.edge)
     }
 
-    /// The part of the map that light of a view gets to through its sheets: the first texel, and how many there are. `None`
-    /// where some of it goes upwards.
+    /// Returns the part of the map that is lit through the sheets of a view: first texel, and number of texels.
+    /// `None` if part of the light goes upwards.
     fn reached(&self, view: &LightView) -> Option<[[u32; 2]; 2]> {
         let FloorTexels { origin, along } = self.place.texels(self.edge);
         let up = self.place.up.direction();
@@ -90,7 +94,7 @@ impl FloorShadow {
             let direction = view.axes.z_axis + across * view.frame.inverse_distance;
             let from = view.anchor + across;
             let speed = direction.dot(up);
-            // As good as along the floor is too far away.
+            // Almost parallel to the floor: the intersection is too far away.
             if speed > -1e-3 {
                 return None;
             }
@@ -104,7 +108,7 @@ impl FloorShadow {
         Some([first, end - first].map(|v| [v.x as u32, v.y as u32]))
     }
 
-    /// Adds what a view whose sheets have all been marched leaves behind them.
+    /// Adds the transmittance behind the sheets of a view; all of them must have been marched.
     pub(crate) fn add(
         &self,
         gpu: Gpu<'_>,
@@ -164,7 +168,7 @@ impl FloorShadow {
     }
 }
 
-/// What tells one pipeline of the map from another.
+/// Pipeline variant of the floor shadow pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct FloorShadowVariant {
     is_first: bool,

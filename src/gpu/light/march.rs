@@ -1,4 +1,4 @@
-//! Forward half of the light pass: fills sheets with the transmittance that they deposit.
+//! Light march, the first half of the light pass: fills sheets with the transmittance that they deposit.
 
 use std::ops::Range;
 
@@ -18,41 +18,41 @@ use crate::math::Region;
 use crate::model::{Deposit, SceneLight, Settings};
 use crate::plan::{LightView, sample_reach};
 
-/// Slabs that share a texel of the ring.
+/// Number of slabs that share a texel of the ring.
 pub(crate) const SLABS_PER_TEXEL: u32 = 4;
 
-/// Bytes of a list of tiles: for 1024 × 1024 pixels, so that hardly any light needs a longer one.
+/// Minimum size of the tile list, in bytes: for sheets of 1024 × 1024 pixels, so that few lights need another buffer.
 const TILE_ROOM: u64 = 64 << 10;
 
-/// Columns and rows of the ring come in so many, because sheets get larger and smaller as the light moves.
+/// Granularity of the ring's columns and rows, because sheets change their size as the light moves.
 const ROOM: u32 = 32;
 
-/// The sheets of one view of a light: a ring of layers through which the slabs stream.
+/// Sheets of one view of a light: a ring of layers through which the slabs stream.
 #[derive(Debug)]
 pub(crate) struct Sheets {
-    /// Layers of the ring, of [`SLABS_PER_TEXEL`] slabs each.
+    /// Number of layers in the ring, with [`SLABS_PER_TEXEL`] slabs each.
     pub layers: u32,
-    /// Slabs marched at a time.
+    /// Number of slabs marched at a time.
     pub chunk: u32,
-    /// Light is followed until less than this is left.
+    /// Transmittance at which light is no longer followed.
     pub min_transmittance: f32,
-    /// For a preview.
+    /// `true` for previews, which may omit the tails of stretched kernels.
     pub preview: bool,
     pub ring: Ring,
-    /// Cells beyond those that the transfer functions show whose sheets are read.
+    /// Number of cells beyond the visible ones in which sheets are read.
     pub reach: i32,
 }
 
 impl Sheets {
-    /// A ring that streams `chunk` slabs at a time and keeps what the reverse kernel still needs of the ones
-    /// before: one that was left behind, if it is large enough.
+    /// Creates the sheets, with a ring that holds `chunk` slabs and those before them that the reverse kernel still
+    /// reads; reuses the pool's ring if that is suitable.
     ///
-    /// Sheets are read up to `reach` cells from what either transfer function shows.
+    /// Sheets are read up to `reach` cells from cells that are occupied in either transfer function.
     pub(crate) fn new(tools: &Tools, view: &LightView, chunk: u32, reach: i32) -> Result<Self, GpuError> {
         let pool = &tools.pool;
         let frame = &view.frame;
-        // Radius 2 on both sides of a voxel, rounded outwards, and one for the quadrature points; the first
-        // of them may be the last of its texel.
+        // Radius 2 on both sides of a voxel, rounded up, and one for the quadrature points; the first slab may be the
+        // last of its texel.
         let kept = ((4.0 * view.kernel_slabs()).ceil() as u32 + 2).div_ceil(SLABS_PER_TEXEL) + 1;
         let chunk = chunk.min(frame.slab_count).next_multiple_of(SLABS_PER_TEXEL).max(SLABS_PER_TEXEL);
         let layers = chunk / SLABS_PER_TEXEL + kept;
@@ -72,7 +72,7 @@ impl Sheets {
         Ring::new(context, size)
     }
 
-    /// What the passes that march bind to group 0.
+    /// Returns the bindings of group 0 for passes that march.
     pub(crate) fn march_entries<'a>(
         &'a self,
         uniform: &'a wgpu::Buffer,
@@ -89,20 +89,20 @@ impl Sheets {
     }
 }
 
-/// What tells one pipeline of the march from another.
+/// Pipeline variant of the march.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct MarchVariant {
     reconstruction: Reconstruction,
-    /// Pixels are wider than voxels somewhere.
+    /// `true` if pixels are wider than voxels somewhere.
     is_stretched: bool,
     is_cut: bool,
     deposit: Deposit,
-    /// Of what is gathered, where that has several.
+    /// Channel of the gathered values that holds extinction.
     component: u32,
 }
 
 impl MarchVariant {
-    /// The march through sheets whose pixels are wider than voxels or not.
+    /// Creates the variant; `is_stretched` tells if pixels are wider than voxels somewhere.
     pub(crate) fn of(settings: &Settings, is_stretched: bool) -> Self {
         let shadows = &settings.shadows;
         Self {
@@ -114,7 +114,7 @@ impl MarchVariant {
         }
     }
 
-    /// The march through what ends there, by a channel of what is gathered.
+    /// Sets the grid boundaries that samples may meet, and the channel that holds extinction.
     fn through(mut self, ends: Ends, component: u32) -> Self {
         self.reconstruction = self.reconstruction.ending(ends);
         self.component = component;
@@ -139,7 +139,7 @@ impl Variant for MarchVariant {
     }
 }
 
-/// What the shaders know about the light, what attenuates it and some slabs of a view.
+/// Builds the uniform for some slabs of a view: light, cut and sheets.
 pub(crate) fn march_uniform(
     light: &SceneLight,
     shading_cut: &Region,
@@ -164,7 +164,7 @@ pub(crate) fn march_uniform(
     }
 }
 
-/// Marches the listed tiles through some slabs of a view: light, or one of its colours.
+/// Marches the listed tiles through some slabs of a view, for white light or one of its colours.
 #[expect(clippy::too_many_arguments, reason = "each is another thing: who, what, how, where from, where to")]
 pub(crate) fn march(
     gpu: Gpu<'_>,
@@ -180,7 +180,7 @@ pub(crate) fn march(
     if tiles.is_empty() {
         return Ok(());
     }
-    // Slabs near a perspective light have narrower pixels than those behind.
+    // Slabs near a perspective light have narrower pixels than those further away.
     let is_stretched = view.frame.max_stretch_level_of(slabs.clone()) > 0.0;
     let empty_space_skipping = sheets.reach != EVERYWHERE;
     let seen = sample_reach(&view.frame, &volume.scene, settings.shadows.quadrature, sheets.preview);
@@ -203,8 +203,10 @@ pub(crate) fn march(
     Ok(())
 }
 
-/// The list in another order: a software driver gives each thread a run of workgroups, and so gets neighbours
-/// for all of them at any time, and for each the same share of what is costly.
+/// Interleaves the tiles for the threads of a software driver, each of which processes a contiguous run of
+/// workgroups.
+///
+/// All threads then work on neighbouring tiles at any time, and share expensive ones evenly.
 fn shared_out(tiles: &[u32], threads: u32) -> Vec<u32> {
     let threads = threads as usize;
     (0..threads).flat_map(|thread| tiles.iter().skip(thread).step_by(threads).copied()).collect()

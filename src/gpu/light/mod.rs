@@ -1,7 +1,8 @@
-//! The light pass: from density to the attenuation of each light.
+//! Light pass: from density to the attenuation volume of each light.
 //!
-//! March (density seen from the light to sheets of transmittance) and back-projection (sheets to voxels) fill a
-//! light volume; rays from its voxels are the other way. Of a light that has a size it is the mean of those of points on it.
+//! The march (density seen from the light, into sheets of transmittance) and the back-projection (sheets into voxels)
+//! fill a light volume; casting rays from its voxels is the alternative. The volume of an area light is the average
+//! over points on it.
 
 pub(super) mod average;
 pub(super) mod backproject;

@@ -1,4 +1,4 @@
-//! Lights as the passes that shade take them: packed for uniforms, and their volumes bound.
+//! Packing of lights into uniforms, and binding of their attenuation volumes.
 
 use glam::DVec3;
 
@@ -11,22 +11,22 @@ use crate::math::SceneSpace;
 use crate::model::{LightArea, LightKind, SceneLight, Settings};
 use crate::plan::LitLight;
 
-/// A light, and the volume that says how much of it is left.
+/// Light with its attenuation volume.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LightInput<'a> {
     pub lit: &'a LitLight,
-    /// `None` where nothing attenuates it, or rays say how much.
+    /// Attenuation volume; `None` if the light casts no shadows, or if rays compute them.
     pub volume: Option<&'a LightVolume>,
 }
 
-/// A light for the shaders.
+/// Builds the uniform of a light.
 pub(crate) fn pack_light(
     light: &SceneLight,
     volume: Option<&LightVolume>,
     scene: &SceneSpace,
     settings: &Settings,
 ) -> uniforms::Light {
-    // Balance makes up for the light that shadows take away; without shadows there is none.
+    // Balance compensates for the light lost in shadows; without shadows it is not applied.
     let balance = if settings.shadows.algorithm.is_on() { settings.shadows.balance } else { 1.0 };
     let cone = light.cone();
     let linear = |c: f32| crate::model::linear_from_srgb(f64::from(c));
@@ -57,7 +57,7 @@ pub(crate) fn pack_light(
     }
 }
 
-/// The light volumes in the order of their lights, as shaders name them; something in place of those that are not there.
+/// Binds the attenuation volumes in the order of their lights, and the placeholder to unused slots.
 pub(crate) fn light_entries<'a>(gpu: Gpu<'a>, attenuation: &[&'a wgpu::TextureView]) -> Vec<Named<'a>> {
     let of_light = |slot: usize| attenuation.get(slot).copied().unwrap_or(gpu.placeholder);
     (0..).zip(ATTENUATION).map(|(slot, name)| view_of(name, of_light(slot))).collect()

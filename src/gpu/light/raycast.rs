@@ -1,4 +1,4 @@
-//! Fills a light volume by a ray from every voxel to the light.
+//! Ray casting of a light volume: a ray from every voxel to the light.
 
 use super::packed::pack_light;
 use super::volume::LightVolume;
@@ -15,22 +15,22 @@ use crate::gpu::{GpuError, RenderOptions};
 use crate::model::{Deposit, SceneLight, Settings};
 use crate::plan::ray_reach;
 
-/// Bricks per submission: 16 × 512 rays, each through the whole of a dense 256³ volume, take a
-/// software adapter some 0.2 s.
+/// Number of bricks per submission: 16 × 512 rays, each through the whole of a dense 256³ volume, take a software
+/// adapter some 0.2 s.
 pub(crate) const BRICKS_PER_STEP: usize = 16;
 
-/// What tells one pipeline of rays to lights from another.
+/// Pipeline variant of rays to lights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct RaycastVariant {
     reconstruction: Reconstruction,
     deposit: Deposit,
     is_cut: bool,
-    /// Of what is gathered, where that has several.
+    /// Channel of the gathered values that holds extinction.
     component: u32,
 }
 
 impl RaycastVariant {
-    /// Rays through what attenuates light.
+    /// Creates the variant without grid boundaries.
     pub(crate) fn of(settings: &Settings) -> Self {
         let shadows = &settings.shadows;
         Self {
@@ -41,7 +41,7 @@ impl RaycastVariant {
         }
     }
 
-    /// Rays through what ends there.
+    /// Sets the grid boundaries that rays may meet.
     pub(crate) fn ending(mut self, ends: Ends) -> Self {
         self.reconstruction = self.reconstruction.ending(ends);
         self
@@ -64,7 +64,7 @@ impl Variant for RaycastVariant {
     }
 }
 
-/// Fills the listed bricks of a light volume, by light or one of its colours.
+/// Fills the listed bricks of a light volume, for white light or one of its colours.
 pub(crate) fn raycast(
     gpu: Gpu<'_>,
     (tables, color): (&Tables, Option<usize>),

@@ -1,4 +1,4 @@
-//! Attenuation volumes: one texture per light.
+//! Attenuation volume of a light, in a texture of its own.
 
 use std::sync::Arc;
 
@@ -14,55 +14,55 @@ use crate::gpu::{Context, GpuError};
 use crate::model::Precision;
 use crate::plan::{BrickSet, CellSet, CellsAhead, FloorPlace, LightKey, LightView, reverse_reach_voxels};
 
-/// One light's attenuation volume.
+/// Attenuation volume of one light.
 #[derive(Debug)]
 pub(crate) struct LightVolume {
-    /// Voxels along x, y, z.
+    /// Number of voxels along x, y and z.
     pub dims: [usize; 3],
-    /// Data voxels per light voxel along an axis.
+    /// Number of data voxels per light voxel, along an axis.
     pub divisor: usize,
-    /// Attenuation, 0 … 1; of red, green and blue light where shadows are coloured.
+    /// Texture of the attenuation, 0 … 1; for red, green and blue light where shadows are coloured.
     pub texture: wgpu::Texture,
-    /// A view of all of it.
+    /// View of the whole texture.
     pub view: wgpu::TextureView,
-    /// What gets to the floor, if that is looked up.
+    /// Map of the light at the floor, if it is looked up.
     pub floor: Option<FloorShadow>,
-    /// Cells (of light voxels) that hold, or will hold, values.
+    /// Cells (of light voxels) that hold values, or will when the volume is complete.
     pub filled: Arc<CellSet>,
-    /// How far, in data cells around what the transfer functions show, those lie at most.
+    /// Maximum distance, in data cells, of the filled cells from visible ones.
     pub reach: u8,
-    /// How far ahead of samples it is looked up, the last first.
+    /// Offsets of lookups towards the light, most recent first.
     pub aheads: Vec<CellsAhead>,
-    /// Cells around what is filled, which only previews look up, and which no material darkens.
+    /// Cells around the filled ones, which only previews look up and which are fully lit.
     margin: CellSet,
-    /// Cells of the margin that are cleared, by this volume or the one that had its texture before.
+    /// Cells of the margin already cleared, by this volume or the previous one with the same texture.
     cleared: Option<CellSet>,
-    /// How long it took.
+    /// Stopwatch for the filling of the volume.
     pub fill: FillTime,
-    /// Counts up with every use; the least recently used goes first.
+    /// Counter value at the last use; the least recently used volume is dropped first.
     pub last_used: u64,
 }
 
-/// What is filled of a light volume.
+/// Extent of a light volume that is to be filled.
 #[derive(Debug)]
 pub(crate) struct Filling {
     /// Cells (of light voxels) to be filled.
     pub filled: Arc<CellSet>,
-    /// Cells around them, to be cleared.
+    /// Cells around the filled ones, to be cleared.
     pub margin: CellSet,
-    /// How far, in data cells around what the transfer functions show, those to be filled lie at most.
+    /// Maximum distance, in data cells, of the cells to be filled from visible ones.
     pub reach: u8,
-    /// How far ahead of samples it will be looked up.
+    /// Offsets of lookups towards the light.
     pub aheads: Vec<CellsAhead>,
-    /// Where the floor lies, if a map is to say what gets there.
+    /// Extent of the floor, if it gets a shadow map.
     pub floor: Option<FloorPlace>,
 }
 
 impl LightVolume {
-    /// Makes the texture, or takes that of a volume that is not wanted any more; nothing is filled yet.
+    /// Creates the volume, with the texture of a recyclable volume if one fits; nothing is filled yet.
     ///
     /// # Errors
-    /// When memory is out.
+    /// Returns an error if memory is exhausted.
     pub(crate) fn new(
         context: &Context,
         volume: &GpuVolume,
@@ -76,7 +76,7 @@ impl LightVolume {
         let floor = floor.map(|place| FloorShadow::new(context, place, block, key.samples())).transpose()?;
         let dims = volume.volume.dims().map(|n| n.div_ceil(divisor));
         let format = match (key.precision(), key.has_colors()) {
-            // An adapter that cannot store bytes keeps what it can.
+            // Adapters that cannot store bytes use the storage format.
             (Precision::Byte, false) if context.byte_volumes => wgpu::TextureFormat::R8Unorm,
             (Precision::Byte | Precision::Half, false) => context.storage_format,
             (Precision::Byte, true) => wgpu::TextureFormat::Rgba8Unorm,
@@ -106,10 +106,10 @@ impl LightVolume {
         Ok(fresh(texture, view, None))
     }
 
-    /// Another one with the same voxels, nothing of which is filled yet.
+    /// Creates a volume with the same voxels, of which nothing is filled.
     ///
     /// # Errors
-    /// When memory is out.
+    /// Returns an error if memory is exhausted.
     pub(crate) fn alike(&self, context: &Context, format: wgpu::TextureFormat) -> Result<Self, GpuError> {
         let texture = attenuation_texture(context, self.dims, format)?;
         Ok(Self {
@@ -128,7 +128,7 @@ impl LightVolume {
         })
     }
 
-    /// The part of the margin that is yet to be cleared: nothing, while a light is dragged.
+    /// Returns the part of the margin that has yet to be cleared; empty while a light is dragged.
     pub(crate) fn uncleared_margin(&self) -> Vec<Listed> {
         let list = |cells: &CellSet| cells.bricks().map(listed_bricks::listed).collect();
         self.cleared
@@ -136,7 +136,7 @@ impl LightVolume {
             .map_or_else(|| list(&self.margin), |cleared| list(&self.margin.without(cleared)))
     }
 
-    /// Lets all light into the listed cells.
+    /// Sets the listed cells to fully lit.
     pub(crate) fn clear_margin(
         &self,
         gpu: Gpu<'_>,
@@ -168,18 +168,18 @@ impl LightVolume {
         Ok(())
     }
 
-    /// The first of its steps is recorded.
+    /// Starts filling: starts the stopwatch, and counts the margin as cleared.
     pub(crate) fn begin(&mut self) {
         self.fill.begin();
         self.cleared = Some(self.margin.clone());
     }
 
-    /// Whether it holds attenuations of red, green and blue light.
+    /// Returns true if the volume holds the attenuation of red, green and blue light.
     pub(crate) fn has_colors(&self) -> bool {
         self.texture.format().components() > 1
     }
 
-    /// Bytes of its texture, and of the floor's map.
+    /// Returns the size of the texture and the floor map, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         let texel = u64::from(self.texture.format().block_copy_size(None).unwrap_or(4));
         let floor = self.floor.as_ref().map_or(0, FloorShadow::bytes);
@@ -187,10 +187,10 @@ impl LightVolume {
     }
 }
 
-/// The texture of a light volume.
+/// Creates the texture of an attenuation volume.
 ///
 /// # Errors
-/// When memory is out.
+/// Returns an error if memory is exhausted.
 pub(crate) fn attenuation_texture(
     context: &Context,
     dims: [usize; 3],
@@ -207,8 +207,8 @@ pub(crate) fn attenuation_texture(
     ))
 }
 
-/// The data bricks whose scattered sheets are splatted back into `filled`: within the reverse kernel of
-/// radius two.
+/// Returns the data bricks whose scattered sheets are back-projected into `filled`: those within the reverse kernel
+/// of radius two.
 pub(crate) fn read_bricks(
     volume: &GpuVolume,
     filled: &CellSet,

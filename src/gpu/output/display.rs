@@ -1,4 +1,4 @@
-//! The display pass: the mean of a pixel's samples, tone map, background and sRGB.
+//! Display pass: average of a pixel's samples, tone map, background and sRGB.
 
 use super::target::{Shape, Target};
 use crate::gpu::pipelines::binding::{buffer, view_of};
@@ -9,14 +9,14 @@ use crate::gpu::resources::tools::Tools;
 use crate::gpu::{GpuError, RenderOptions};
 use crate::model::{Background, Depth, Output, ToneMap};
 
-/// What tells one pipeline of the display from another.
+/// Pipeline variant of the display pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct DisplayVariant {
-    /// Samples of a pixel along an edge.
+    /// Number of samples along an edge of a pixel.
     pub samples: u32,
-    /// Light is written as it is.
+    /// `true` if linear light is written, without the sRGB curve.
     pub is_linear: bool,
-    /// More than 8 bits are written.
+    /// `true` if more than 8 bits per channel are written.
     pub is_deep: bool,
 }
 
@@ -37,8 +37,8 @@ impl Variant for DisplayVariant {
     }
 }
 
-/// Turns the linear picture into the shown one, with all light multiplied by the exposure of the look, and that of the
-/// volume by a preview's.
+/// Converts the linear picture to the displayed one. All light is multiplied by the exposure of the settings, and
+/// that of the volume also by the preview's exposure.
 pub(crate) fn display(
     Tools { context, shaders, pool, .. }: &Tools,
     output: &Output,
@@ -52,7 +52,8 @@ pub(crate) fn display(
     let ([first_column, first_row], rows) =
         options.part.map_or(([0; 2], size[1]), |part| (part.first, part.whole[1]));
     let Background { top, bottom } = output.background;
-    // What is one colour stays that; what is finer than 8 bits, or cut out, needs nothing.
+    // A uniform background stays uniform, and pictures with more than 8 bits or a transparent background need no
+    // dither.
     let is_dithered = top != bottom && !deep && !options.transparent;
     let opaque = |[r, g, b]: [f32; 3]| [r, g, b, 1.0];
     let uniform = uniforms::Display {

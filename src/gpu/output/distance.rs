@@ -1,21 +1,21 @@
-//! How far two pictures are apart, as displayed.
+//! Distance between two pictures, as displayed.
 
-/// The distance between two pictures, in steps of 8 bits.
+/// Difference between two pictures, in steps of 8 bits (1/255).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Distance {
-    /// Root of the mean square over pixels and colours.
+    /// Root mean square over pixels and colour channels.
     pub rmse: f64,
-    /// The largest of any colour.
+    /// Maximum over pixels and colour channels.
     pub largest: f64,
 }
 
 impl Distance {
-    /// Between two pictures of one size: sRGB bytes, RGBA; alpha does not count.
+    /// Compares two pictures of equal size: RGBA in sRGB bytes, alpha ignored.
     pub fn between(left: &[u8], right: &[u8]) -> Self {
         Self::of(left, right, f64::from)
     }
 
-    /// The distance in units in which 1 is white.
+    /// Compares two RGBA pictures of equal size with floating-point channels, in which 1 is white.
     pub fn between_values(left: &[f32], right: &[f32]) -> Self {
         Self::of(left, right, |value| 255.0 * f64::from(value))
     }

@@ -1,4 +1,4 @@
-//! Light volumes as files: the whole as NRRD, a slice of it in false colours.
+//! Export of light volumes: the whole as NRRD, a slice in false colours as PNG.
 
 use std::path::Path;
 
@@ -10,20 +10,21 @@ use crate::gpu::resources::readback::Attenuation;
 use crate::math::false_color;
 use crate::model::srgb_from_linear;
 
-/// Values in a plane of a light volume.
+/// Axis-aligned slice of a light volume.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LightSlice {
-    /// Columns and rows.
+    /// Number of columns and rows.
     pub size: [usize; 2],
-    /// 0 (dark) … 1 (fully lit), row by row; the last rows of the grid come first, so that up is up.
+    /// Attenuation from 0 (fully shadowed) to 1 (fully lit), row by row; the last rows of the grid come first, so
+    /// that up is up.
     pub values: Vec<f32>,
-    /// Where shadows are coloured, the same of red, green and blue light; else none.
+    /// Attenuation of red, green and blue light where shadows are coloured; else empty.
     pub rgb: Vec<[f32; 3]>,
 }
 
 impl Attenuation {
-    /// The slice `index` across an axis (0 for x): the other two axes run to the right and up. `None`
-    /// beyond the grid.
+    /// Returns the slice `index` across an axis (0 for x): the other two axes run to the right and up. `None` beyond
+    /// the grid.
     pub fn slice(&self, axis: usize, index: usize) -> Option<LightSlice> {
         if index >= *self.dims.get(axis)? {
             return None;
@@ -43,7 +44,7 @@ impl Attenuation {
 }
 
 impl LightSlice {
-    /// sRGB bytes, three per value: in false colours, or as white light looks there where shadows are coloured.
+    /// Returns sRGB bytes, three per value: false colours, or the colour of white light behind coloured shadows.
     pub fn colors(&self) -> Vec<u8> {
         if self.rgb.is_empty() {
             return self.values.iter().flat_map(|&value| false_color(value)).collect();
@@ -53,17 +54,17 @@ impl LightSlice {
     }
 }
 
-/// Writes a slice as PNG, in false colours.
+/// Writes a slice as a PNG file.
 ///
 /// # Errors
-/// When the name is not one of a PNG file, else as [`write_atomically`].
+/// Returns an error if the name has another ending than `.png`, or as [`write_atomically`].
 pub fn export_slice(slice: &LightSlice, path: &Path) -> Result<(), ExportError> {
     let png = encode_png(slice.size.map(|n| n as u32), png::ColorType::Rgb, &slice.colors(), None)?;
     check_ending(path, &["png"], "slices of light volumes are written as .png")?;
     write_atomically(path, &png)
 }
 
-/// The attenuation volume as an attached NRRD, in the place of the data.
+/// Encodes the attenuation volume as an attached NRRD, positioned in space like the data.
 pub fn light_volume_nrrd(volume: &Volume, attenuation: &Attenuation) -> Vec<u8> {
     let world = volume.world_from_index();
     let step = attenuation.divisor as f64;
@@ -99,7 +100,7 @@ mod tests {
         assert_eq!(back.dims(), [8; 3]);
         assert_eq!(back.spacing_mm(), volume.spacing_mm() * 2.0);
         assert!((back.value(1, 0, 0) - 1.0 / 512.0).abs() < 1e-9);
-        // The box around the voxels is the same.
+        // The bounding box around the voxels' outer faces is unchanged.
         let corner = |volume: &Volume| volume.world_from_index().transform_point3(glam::DVec3::splat(-0.5));
         assert!((corner(&back) - corner(&volume)).length() < 1e-9);
     }

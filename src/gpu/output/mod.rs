@@ -1,4 +1,4 @@
-//! What is made of finished pictures and light volumes: display colours, slices, distances, the window.
+//! Outputs made of finished pictures and light volumes: display colours, slices, distances, drawing in the window.
 
 pub(super) mod display;
 pub(super) mod distance;

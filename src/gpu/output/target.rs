@@ -1,55 +1,55 @@
-//! A picture in the making: its linear light, the floor under it, and what is shown of both.
+//! Render target of a picture: linear light of the volume, light of the floor, and the displayed result.
 
 use crate::gpu::resources::cached::Cached;
 use crate::gpu::{Context, GpuError};
 use crate::plan::{DisplayKey, EyeKey, FloorKey};
 
-/// What a [`Target`] has room for.
+/// Size and depth of a [`Target`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Shape {
-    /// Pixels shown per row and column.
+    /// Displayed pixels per row and column.
     pub size: [u32; 2],
-    /// Samples of each along an edge.
+    /// Number of samples along an edge of a pixel.
     pub samples: u32,
-    /// Whether what is shown has more than 8 bits.
+    /// `true` if the displayed picture has more than 8 bits per channel.
     pub deep: bool,
 }
 
 impl Shape {
-    /// Samples per row and column.
+    /// Returns the number of samples per row and column.
     pub(crate) fn drawn(&self) -> [u32; 2] {
         self.size.map(|n| n * self.samples)
     }
 }
 
-/// A texture, and how passes see it.
+/// Two-dimensional texture with its view.
 #[derive(Debug)]
 pub(crate) struct Plane {
     pub texture: wgpu::Texture,
     pub view: wgpu::TextureView,
 }
 
-/// The linear, premultiplied light of a volume before tone mapping.
+/// Linear, premultiplied light of the volume before tone mapping.
 #[derive(Debug)]
 pub(crate) struct Light {
     pub plane: Plane,
-    /// How many footprints it took, where voxels were scattered.
+    /// Buffer that counts the footprints scattered; `None` for the gathering engine.
     pub splats: Option<wgpu::Buffer>,
 }
 
-/// A picture's textures, each with what it was made from: `None` of what was never drawn.
+/// Textures of a picture, each with its key; `None` for textures that were never drawn.
 #[derive(Debug)]
 pub(crate) struct Target {
     pub shape: Shape,
-    /// What the eye pass draws.
+    /// Output of the eye pass.
     pub light: Cached<Option<EyeKey>, Light>,
-    /// What the floor pass draws, premultiplied; a single texel where there is no floor.
+    /// Output of the floor pass, premultiplied; a single texel without a floor.
     pub floor: Cached<Option<FloorKey>, Plane>,
-    /// What the display pass draws: sRGB bytes, or more than them if the shape says so.
+    /// Output of the display pass: sRGB bytes, or floats if the shape is deep.
     pub shown: Cached<Option<ShownKey>, Plane>,
 }
 
-/// Everything that the display pass shows.
+/// Key of the displayed picture.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ShownKey {
     pub eye: EyeKey,
@@ -58,10 +58,10 @@ pub(crate) struct ShownKey {
 }
 
 impl Target {
-    /// Makes textures without a floor.
+    /// Creates the textures, without those of a floor.
     ///
     /// # Errors
-    /// When the picture is too large for the adapter.
+    /// Returns an error if the picture exceeds the adapter's limits or memory is exhausted.
     pub(crate) fn new(context: &Context, shape: Shape) -> Result<Self, GpuError> {
         let shown_format =
             if shape.deep { wgpu::TextureFormat::Rgba32Float } else { wgpu::TextureFormat::Rgba8Unorm };
@@ -72,16 +72,16 @@ impl Target {
         Ok(Self {
             shape,
             light: Cached::unfilled(None, light),
-            // Never written to, textures are zeros: no floor at all.
+            // Textures that were never written to are zero: no floor at all.
             floor: Cached::complete(None, floor_plane(context, [1; 2])?),
             shown: Cached::unfilled(None, plane(context, "Target::shown", shape.size, shown_format)?),
         })
     }
 
-    /// Makes room for a floor, or drops it. Returns whether textures have changed.
+    /// Allocates the floor's texture, or drops it if `key` is `None`. Returns true if textures have changed.
     ///
     /// # Errors
-    /// When memory is out.
+    /// Returns an error if memory is exhausted.
     pub(crate) fn place_floor(
         &mut self,
         context: &Context,
@@ -98,17 +98,17 @@ impl Target {
         Ok(true)
     }
 
-    /// Whether there is room for a floor.
+    /// Returns true if there is a full-size floor texture.
     pub(crate) fn has_floor(&self) -> bool {
         self.floor.value.texture.width() > 1 || self.floor.value.texture.height() > 1
     }
 
-    /// Whether the linear light that a key asks for is here.
+    /// Returns true if the linear light of this key is complete.
     pub(crate) fn holds_light(&self, key: &EyeKey) -> bool {
         self.light.is_complete() && self.light.key().as_ref() == Some(key)
     }
 
-    /// Nothing of it may be shown again: what it was made from has been changed from outside.
+    /// Invalidates all textures, because their inputs were changed from outside.
     pub(crate) fn forget(&mut self) {
         self.light.restart(None);
         self.shown.restart(None);
@@ -117,7 +117,7 @@ impl Target {
         }
     }
 
-    /// Bytes of its textures.
+    /// Returns the size of the textures, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         let texels = |plane: &Plane| u64::from(plane.texture.width()) * u64::from(plane.texture.height());
         let shown = if self.shape.deep { 16 } else { 4 };

@@ -1,20 +1,21 @@
-//! Pictures in the window, and what lies under its panels: drawn into a render pass of the window's own device.
+//! Drawing of pictures into the window, and of the fill under its panels, in a render pass of the window's device.
 
 use crate::gpu::GpuError;
 use crate::gpu::pipelines::shader::ShaderLibrary;
 
-/// What draws them, for a target of one format.
+/// Pipelines that draw pictures and fills into a target of one format.
 #[derive(Debug, Clone)]
 pub struct WindowPainter {
     device: wgpu::Device,
     queue: wgpu::Queue,
     picture: wgpu::RenderPipeline,
     fill: wgpu::RenderPipeline,
-    /// For pictures with as many pixels as the window has there, and for others.
+    /// Samplers for pictures that are scaled (linear), and for those with as many pixels as the window has there
+    /// (nearest).
     samplers: [wgpu::Sampler; 2],
 }
 
-/// A picture on the window's device.
+/// Picture in a texture of the window's device.
 #[derive(Debug, Clone)]
 pub struct WindowPicture {
     texture: wgpu::Texture,
@@ -24,16 +25,16 @@ pub struct WindowPicture {
 }
 
 impl WindowPainter {
-    /// Sets up the pipelines for render passes into `target`, without depth and with one sample per pixel.
+    /// Creates the pipelines for render passes into `target`, without depth and with one sample per pixel.
     ///
     /// # Errors
-    /// When the shader is not there.
+    /// Returns an error if the shader is missing.
     pub fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         target: wgpu::TextureFormat,
     ) -> Result<Self, GpuError> {
-        // It stores nothing: the formats do not matter.
+        // The shader writes no storage textures, so these formats are unused.
         let format = wgpu::TextureFormat::R16Float;
         let source = ShaderLibrary::source("output/window.wgsl", format, format)?;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -57,8 +58,9 @@ impl WindowPainter {
         })
     }
 
-    /// Puts a picture of so many pixels (sRGB, four bytes each, rows from the top) in the place of another, whose
-    /// texture serves again if it has the size. It is exact if the window has as many pixels there.
+    /// Uploads a picture of `size` pixels (sRGB, four bytes each, rows from the top), reusing the texture of the
+    /// picture before it if size and filter are the same. `is_exact` tells that the window shows it with as many
+    /// pixels.
     pub fn place(
         &self,
         before: Option<WindowPicture>,
@@ -103,7 +105,7 @@ impl WindowPainter {
         WindowPicture { texture, is_exact, bind_group, pipeline: self.picture.clone() }
     }
 
-    /// Fills the viewport of a pass with a colour (sRGB).
+    /// Fills the viewport of a pass with an sRGB colour.
     pub fn fill(&self, pass: &mut wgpu::RenderPass<'_>, [red, green, blue]: [u8; 3]) {
         let number = u32::from_le_bytes([red, green, blue, 0]);
         pass.set_pipeline(&self.fill);
@@ -112,13 +114,13 @@ impl WindowPainter {
 }
 
 impl WindowPicture {
-    /// How many pixels wide it is.
+    /// Returns the width in pixels.
     pub fn width(&self) -> u32 {
         self.texture.width()
     }
 
-    /// Draws it over the viewport of a pass with so many 255ths of opacity, moved to the right by so many of its own
-    /// pixels; what that leaves free shows the pixels of its edge.
+    /// Draws the picture over the viewport of a pass with an opacity of `opacity` / 255, shifted right by `moved` of
+    /// its own pixels; the area that the shift uncovers repeats the pixels of the edge.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, opacity: u8, moved: i16) {
         let number = u32::from(opacity) | (u32::from(moved.wrapping_sub(i16::MIN) as u16) << 8);
         pass.set_pipeline(&self.pipeline);

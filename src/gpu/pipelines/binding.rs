@@ -1,9 +1,9 @@
-//! Bindings by name: what a shader declares, and what is bound to it.
+//! Shader bindings by name: declared slots, and the resources bound to them.
 
 use crate::gpu::Context;
 use crate::gpu::context::pair_format;
 
-/// A binding of a shader: its number in its group, its name there, and what may be bound.
+/// Binding of a shader: its number in the group, its name in WGSL, and the kind of resource it takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct Slot {
     pub number: u32,
@@ -11,32 +11,32 @@ pub(crate) struct Slot {
     pub kind: Kind,
 }
 
-/// What may be bound.
+/// Kind of resource that a slot takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Kind {
-    /// A struct of so many bytes.
+    /// Uniform buffer with a struct of this many bytes.
     Uniform(u64),
-    /// A storage buffer of so many bytes at least.
+    /// Storage buffer of at least this many bytes.
     List(u64, Access),
-    /// A texture that is read through a sampler.
+    /// Float texture that is sampled with filtering.
     Sampled(Shape),
-    /// A texture of floats whose texels are loaded.
+    /// Float texture whose texels are loaded without filtering.
     Loaded(Shape),
-    /// A texture of unsigned integers.
+    /// Texture of unsigned integers.
     Integers(Shape),
-    /// A texture that is written.
+    /// Storage texture that is written.
     Target(Shape, Format),
     Sampler,
 }
 
-/// What shaders do with a storage buffer.
+/// Access of a shader to a storage buffer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Access {
     Read,
     ReadWrite,
 }
 
-/// The format of the ring of sheets where single channels are stored in `storage`.
+/// Returns the four-channel format of the ring of sheets, with the precision of the single-channel format `storage`.
 pub(crate) fn ring_format(storage: wgpu::TextureFormat) -> wgpu::TextureFormat {
     match storage {
         wgpu::TextureFormat::R32Float => wgpu::TextureFormat::Rgba32Float,
@@ -44,68 +44,69 @@ pub(crate) fn ring_format(storage: wgpu::TextureFormat) -> wgpu::TextureFormat {
     }
 }
 
-/// How the texels of a texture lie.
+/// Dimensionality of a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Shape {
-    /// In two dimensions.
+    /// Two-dimensional texture, one layer.
     Picture,
-    /// In layers of two dimensions.
+    /// Array of two-dimensional layers.
     Sheets,
-    /// In three dimensions.
+    /// Three-dimensional texture with filtering in depth.
     Volume,
 }
 
-/// Format of a texture that is written.
+/// Format of a storage texture that is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Format {
     Of(wgpu::TextureFormat),
-    /// That of single channels, as the adapter can store them.
+    /// Single-channel storage format of the adapter.
     Storage,
-    /// That of two such channels beside each other.
+    /// Two-channel format with the precision of the storage format.
     Pair,
-    /// The one that the pipeline is made for: that of a light volume, say.
+    /// Format passed when the pipeline is made, for example that of a light volume.
     Target,
-    /// That of the ring of sheets.
+    /// Four-channel format of the ring of sheets.
     Ring,
 }
 
 impl Slot {
-    /// A uniform of the type that the host writes.
+    /// Declares a uniform with the size of the host's struct `T`.
     pub(crate) const fn uniform<T>(number: u32, name: &'static str) -> Self {
         Self { number, name, kind: Kind::Uniform(size_of::<T>() as u64) }
     }
 
-    /// A storage buffer of so many bytes at least.
+    /// Declares a storage buffer of at least `bytes` bytes.
     pub(crate) const fn list(number: u32, name: &'static str, bytes: u64, access: Access) -> Self {
         Self { number, name, kind: Kind::List(bytes, access) }
     }
 
-    /// A texture that is read through a sampler.
+    /// Declares a float texture that is sampled with filtering.
     pub(crate) const fn sampled(number: u32, name: &'static str, shape: Shape) -> Self {
         Self { number, name, kind: Kind::Sampled(shape) }
     }
 
-    /// A texture of floats whose texels are loaded.
+    /// Declares a float texture whose texels are loaded.
     pub(crate) const fn loaded(number: u32, name: &'static str, shape: Shape) -> Self {
         Self { number, name, kind: Kind::Loaded(shape) }
     }
 
-    /// A texture of unsigned integers.
+    /// Declares a texture of unsigned integers.
     pub(crate) const fn integers(number: u32, name: &'static str, shape: Shape) -> Self {
         Self { number, name, kind: Kind::Integers(shape) }
     }
 
-    /// A texture that is written.
+    /// Declares a storage texture that is written.
     pub(crate) const fn target(number: u32, name: &'static str, shape: Shape, format: Format) -> Self {
         Self { number, name, kind: Kind::Target(shape, format) }
     }
 
-    /// A sampler.
+    /// Declares a sampler with linear filtering.
     pub(crate) const fn sampler(number: u32, name: &'static str) -> Self {
         Self { number, name, kind: Kind::Sampler }
     }
 
-    /// The entry of a layout, for targets of a format, where single channels are stored in `storage`.
+    /// Returns the entry of the bind-group layout. `storage` is the adapter's single-channel storage format, `target`
+    /// the format of [`Format::Target`] textures.
     pub(crate) fn entry(
         self,
         storage: wgpu::TextureFormat,
@@ -161,29 +162,29 @@ impl Shape {
     }
 }
 
-/// A resource, and the name of the binding that it is for.
+/// Resource with the name of the binding that it is meant for.
 #[derive(Debug, Clone)]
 pub(crate) struct Named<'a> {
     pub name: &'static str,
     pub resource: wgpu::BindingResource<'a>,
 }
 
-/// A whole buffer for a binding.
+/// Binds a whole buffer to a name.
 pub(crate) fn buffer<'a>(name: &'static str, buffer: &'a wgpu::Buffer) -> Named<'a> {
     Named { name, resource: buffer.as_entire_binding() }
 }
 
-/// A texture view for a binding.
+/// Binds a texture view to a name.
 pub(crate) fn view_of<'a>(name: &'static str, view: &'a wgpu::TextureView) -> Named<'a> {
     Named { name, resource: wgpu::BindingResource::TextureView(view) }
 }
 
-/// A sampler for a binding.
+/// Binds a sampler to a name.
 pub(crate) fn sampler<'a>(name: &'static str, sampler: &'a wgpu::Sampler) -> Named<'a> {
     Named { name, resource: wgpu::BindingResource::Sampler(sampler) }
 }
 
-/// A group of bindings of a pipeline.
+/// Bind group declaration of a pipeline: slots and layout.
 #[derive(Debug, Clone)]
 pub(crate) struct Group {
     pub slots: &'static [Slot],
@@ -191,7 +192,7 @@ pub(crate) struct Group {
 }
 
 impl Group {
-    /// A group whose layout follows from its slots.
+    /// Creates a group whose layout follows from its slots.
     pub(crate) fn new(context: &Context, slots: &'static [Slot], target: wgpu::TextureFormat) -> Self {
         let entries: Vec<_> = slots.iter().map(|slot| slot.entry(context.storage_format, target)).collect();
         let layout = context.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
@@ -201,8 +202,8 @@ impl Group {
         Self { slots, layout }
     }
 
-    /// What is bound under the numbers of its names. A name that the shader does not know gets a number that it
-    /// does not know either, which the device refuses.
+    /// Returns the bind-group entries for named resources. A name that the shader does not declare gets a binding
+    /// number that does not exist, which the device rejects.
     pub(crate) fn entries<'a>(&self, named: &[Named<'a>]) -> Vec<wgpu::BindGroupEntry<'a>> {
         let number = |name: &str| self.slots.iter().find(|slot| slot.name == name).map(|slot| slot.number);
         named
@@ -215,7 +216,7 @@ impl Group {
     }
 }
 
-/// A compute pipeline, and what can be bound to it.
+/// Compute pipeline with the declarations of its bind groups.
 #[derive(Debug, Clone)]
 pub(crate) struct Pipeline {
     pub raw: wgpu::ComputePipeline,

@@ -1,13 +1,14 @@
-//! Parts of shaders that only some variants have. Drivers inline all functions before they drop what an override constant
-//! switches off, and take seconds for what is never run; so such parts stand between lines `#if`, `#else` and `#endif`
-//! and are left out of the text.
+//! Conditional compilation of shaders (`#if`, `#else`, `#endif`).
 //!
-//! A condition is the name of a number that variants give, like those of override constants, and holds unless that is 0;
-//! or such a name and a bound, as in `#if SHADOWED > 2`. What a variant does not name is 0.
+//! Drivers inline all functions before they drop what an override constant switches off, and spend seconds on code
+//! that never runs; so code that only some variants need is left out of the text.
+//!
+//! A condition is the name of a variant's number, like that of an override constant, and holds unless the number is
+//! 0; or a name and a bound, as in `#if SHADOWED > 2`. Numbers that a variant does not set are 0.
 
 use crate::gpu::GpuError;
 
-/// Names that stand in conditions alone, which drivers are not told.
+/// Names used in conditions only; they are not declared as override constants in WGSL.
 const TEXT_ALONE: [&str; 12] = [
     "FACES",
     "MISSING",
@@ -23,27 +24,27 @@ const TEXT_ALONE: [&str; 12] = [
     "ONE_COLOR",
 ];
 
-/// Names that are override constants as well.
+/// Names used in conditions that are override constants as well.
 const OVERRIDES: [&str; 3] = ["SHADOWED", "NEAR_STEPS", "GATHERED"];
 
-/// Whether drivers are told a constant of that name.
+/// Returns true if `name` is passed to the driver as an override constant.
 pub(super) fn is_override(name: &str) -> bool {
     !TEXT_ALONE.contains(&name)
 }
 
-/// All names of conditions.
+/// Returns the names of all conditions.
 #[cfg(feature = "testing")]
 pub fn shader_conditions() -> impl Iterator<Item = &'static str> {
     TEXT_ALONE.into_iter().chain(OVERRIDES)
 }
 
-/// The lines of a source whose conditions hold, where `value` tells the numbers.
+/// Returns the lines of a source whose conditions hold; `value` gives the number of a name.
 ///
 /// # Errors
-/// When a condition has another name, or the lines do not match.
+/// Returns an error if a condition has an unknown name, or if the lines are not balanced.
 pub(super) fn chosen(source: &str, value: &dyn Fn(&str) -> f64) -> Result<String, GpuError> {
     let refused = |line: &str| GpuError::Refused(format!("a shader has a line {line:?} that means nothing"));
-    // Of each condition around a line, whether it holds.
+    // Results of the enclosing conditions, outermost first.
     let mut around = Vec::new();
     let mut lines = String::with_capacity(source.len());
     for line in source.lines() {
@@ -64,7 +65,7 @@ pub(super) fn chosen(source: &str, value: &dyn Fn(&str) -> f64) -> Result<String
     if around.is_empty() { Ok(lines) } else { Err(refused("#if without #endif")) }
 }
 
-/// Whether a condition holds; `None` if it is none.
+/// Evaluates a condition; `None` if it cannot be parsed.
 fn holds(condition: &str, value: &dyn Fn(&str) -> f64) -> Option<bool> {
     let (name, bound) = match condition.split_once(" > ") {
         Some((name, bound)) => (name, bound.parse().ok()?),

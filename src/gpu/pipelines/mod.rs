@@ -1,4 +1,4 @@
-//! Shaders and what is made of them: their texts, pipelines and variants, bindings by name, uniforms.
+//! Shader sources, pipelines and their variants, bindings by name, uniforms.
 
 pub(super) mod binding;
 pub(super) mod conditions;

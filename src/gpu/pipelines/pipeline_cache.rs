@@ -1,4 +1,4 @@
-//! Compiled pipelines kept on disk, where the backend can (Vulkan): the next start finds them.
+//! Pipeline cache on disk, for backends that support it (Vulkan): the next start skips compilation.
 
 use std::path::{Path, PathBuf};
 
@@ -6,10 +6,10 @@ use crate::data::read_bounded;
 use crate::export::{ExportError, make_folder, write_atomically};
 use crate::gpu::Context;
 
-/// Most bytes that are read: what drivers keep for our three dozen shaders is far less.
+/// Maximum size of a cache file that is read, in bytes; caches of this program's three dozen shaders are far smaller.
 const MOST_BYTES: u64 = 64 << 20;
 
-/// What a driver keeps of the pipelines that it made.
+/// Driver's cache of compiled pipelines, with its file.
 #[derive(Debug, Clone)]
 pub(crate) struct PipelineCache {
     pub(crate) cache: wgpu::PipelineCache,
@@ -17,8 +17,8 @@ pub(crate) struct PipelineCache {
 }
 
 impl PipelineCache {
-    /// Opens the cache of an adapter in a folder; empty if there is none, or a damaged one. `None` where
-    /// the backend keeps nothing.
+    /// Opens the cache of an adapter in a folder; empty if the file is missing or damaged. `None` where the backend
+    /// has no pipeline cache.
     #[expect(unsafe_code, reason = "the driver is handed bytes from a file")]
     pub(crate) fn open(context: &Context, folder: &Path) -> Option<Self> {
         let name = wgpu::util::pipeline_cache_key(&context.info)?;
@@ -27,9 +27,8 @@ impl PipelineCache {
         }
         let path = folder.join(name);
         let data = read(&path);
-        // SAFETY: the bytes are those that `save` got from `get_data`: `read` returns none whose sum is not
-        // theirs. That adapter, driver and library are the same is checked by wgpu, which falls back to an
-        // empty cache.
+        // SAFETY: the bytes are those that `save` got from `get_data`: `read` returns none whose checksum differs.
+        // wgpu checks that adapter, driver and library are the same, and falls back to an empty cache.
         let cache = unsafe {
             context.device.create_pipeline_cache(&wgpu::PipelineCacheDescriptor {
                 label: Some("PipelineCache"),
@@ -40,10 +39,10 @@ impl PipelineCache {
         Some(Self { cache, path })
     }
 
-    /// Writes what the driver keeps, whole or not at all.
+    /// Writes the driver's cache to its file, atomically.
     ///
     /// # Errors
-    /// When the file cannot be written.
+    /// Returns an error if the file cannot be written.
     pub(crate) fn save(&self) -> Result<(), ExportError> {
         let Some(data) = self.cache.get_data() else { return Ok(()) };
         let folder = self.path.parent().unwrap_or(Path::new("."));
@@ -52,7 +51,7 @@ impl PipelineCache {
     }
 }
 
-/// The bytes of a file that `save` has written; `None` if it was not, or is damaged.
+/// Reads a file that `save` has written; `None` if it is missing or damaged.
 fn read(path: &Path) -> Option<Vec<u8>> {
     let mut bytes = read_bounded(path, MOST_BYTES).ok()??;
     let (stated, data) = bytes.split_first_chunk::<8>()?;
@@ -64,7 +63,7 @@ fn read(path: &Path) -> Option<Vec<u8>> {
     Some(bytes)
 }
 
-/// Fletcher's sum: notices any single changed byte, and bytes that changed places.
+/// Fletcher's checksum with 32-bit sums: detects any single changed byte, and swapped bytes.
 fn sum(bytes: &[u8]) -> u64 {
     let (mut a, mut b) = (1_u64, 0_u64);
     for &byte in bytes {
@@ -94,7 +93,7 @@ mod tests {
             std::fs::write(&path, &damaged).expect("written");
             assert_eq!(read(&path), None, "byte {at}");
         }
-        // A file without an end, and one that is longer than any cache.
+        // An endless file, a pipe and a file longer than any cache are rejected.
         #[cfg(target_os = "linux")]
         {
             let link = folder.path().join("link");

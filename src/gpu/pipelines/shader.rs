@@ -1,4 +1,4 @@
-//! Shader sources: embedded, joined by `#import "path"` (each file once), turned into pipelines.
+//! Shader library: joins embedded sources by `#import "path"` (each file once) and makes pipelines of them.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -15,20 +15,20 @@ use crate::fault::{self, Fault};
 use crate::gpu::context::{OF_THE_COMPILER, check_room, pair_format};
 use crate::gpu::{Context, GpuError};
 
-/// Joins sources and makes pipelines, each once.
+/// Cache of compute pipelines; joins the sources and compiles each variant once.
 #[derive(Debug, Clone)]
 pub struct ShaderLibrary {
     pub(crate) context: Context,
-    /// Replacements in the joined source; see [`Self::with_mutation`].
+    /// Text replacement in the joined source; see [`Self::with_mutation`].
     mutation: Option<(String, String)>,
     pipelines: Arc<Mutex<HashMap<PipelineKey, Pipeline>>>,
-    /// Groups of bindings, by the address of their slots and the format of targets.
+    /// Bind-group layouts, by the address of their slots and the format of targets.
     groups: Arc<Mutex<HashMap<GroupKey, Group>>>,
     cache: Option<PipelineCache>,
 }
 
 impl ShaderLibrary {
-    /// An empty library for a device.
+    /// Creates an empty library for a device.
     pub fn new(context: &Context) -> Self {
         Self {
             context: context.clone(),
@@ -39,47 +39,47 @@ impl ShaderLibrary {
         }
     }
 
-    /// A library that keeps what the driver makes of its shaders in a folder, where the backend can.
+    /// Creates a library that caches the driver's compiled shaders in a folder, where the backend can.
     #[must_use]
     pub fn with_cache(context: &Context, folder: &Path) -> Self {
         Self { cache: PipelineCache::open(context, folder), ..Self::new(context) }
     }
 
-    /// Writes what is to be found by the next start.
+    /// Writes the pipeline cache to its file, for the next start.
     ///
     /// # Errors
-    /// When the file cannot be written.
+    /// Returns an error if the file cannot be written.
     pub fn save_cache(&self) -> Result<(), ExportError> {
         self.cache.as_ref().map_or(Ok(()), PipelineCache::save)
     }
 
-    /// A library that replaces a text in every shader that has it. Tests use it to prove that they
-    /// notice a wrong shader.
+    /// Creates a library that replaces `from` by `to` in every shader that contains it. Tests use it to prove that
+    /// they detect a wrong shader.
     #[cfg(feature = "testing")]
     #[must_use]
     pub fn with_mutation(context: &Context, from: &str, to: &str) -> Self {
         Self { mutation: Some((from.to_owned(), to.to_owned())), ..Self::new(context) }
     }
 
-    /// A shader with everything that it imports and all its conditional parts, for storage textures of `format`, and
-    /// targets of `target`.
+    /// Returns a shader with all imports and all its conditional parts, for storage textures of `format` and targets
+    /// of `target`.
     ///
     /// # Errors
-    /// When a file is not there.
+    /// Returns an error if a file is missing.
     pub fn source(
         name: &str,
         format: wgpu::TextureFormat,
         target: wgpu::TextureFormat,
     ) -> Result<String, GpuError> {
-        // More than any bound of a condition: all lights are shadowed.
+        // Larger than any bound in a condition, so that all parts are included.
         Self::source_where(name, format, target, &|_| f64::INFINITY)
     }
 
-    /// A shader with those of its conditional parts (`conditions.rs`) whose conditions hold; `value` tells the numbers in
-    /// them.
+    /// Returns a shader with those conditional parts (`conditions.rs`) whose conditions hold; `value` gives the
+    /// number of each name.
     ///
     /// # Errors
-    /// When a file is not there, or a condition means nothing.
+    /// Returns an error if a file is missing or a condition is malformed.
     pub fn source_where(
         name: &str,
         format: wgpu::TextureFormat,
@@ -106,18 +106,18 @@ impl ShaderLibrary {
             .replace("RING_FORMAT", wgsl(ring_format(format))))
     }
 
-    /// The pipeline of a variant, made on first use.
+    /// Returns the pipeline of a variant, compiled on first use.
     ///
     /// # Errors
-    /// When the driver refuses it.
+    /// Returns an error if the driver rejects the shader.
     pub(crate) fn pipeline(&self, variant: &impl Variant) -> Result<Pipeline, GpuError> {
         self.pipeline_into(variant, self.context.storage_format)
     }
 
-    /// The pipeline of a variant that writes into textures of some format.
+    /// Returns the pipeline of a variant that writes into textures of the format `target`.
     ///
     /// # Errors
-    /// As [`Self::pipeline`].
+    /// Same as [`Self::pipeline`].
     pub(crate) fn pipeline_into(
         &self,
         variant: &impl Variant,
@@ -129,18 +129,18 @@ impl ShaderLibrary {
         if let Some(pipeline) = pipelines().get(&key) {
             return Ok(pipeline.clone());
         }
-        // Not locked meanwhile: a window must not wait for the variants that another thread makes.
+        // The lock is released while compiling: the window must not wait for variants that another thread makes.
         let pipeline = self.make(shader, &constants, target)?;
         pipelines().insert(key, pipeline.clone());
         Ok(pipeline)
     }
 
-    /// How many pipelines were made.
+    /// Returns the number of pipelines made so far.
     pub fn pipeline_count(&self) -> usize {
         self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).len()
     }
 
-    /// The groups of bindings of a shader, of which equal ones are shared by all.
+    /// Returns the bind groups of a shader; equal ones share one layout.
     fn groups_of(&self, shader: &str, target: wgpu::TextureFormat) -> Result<Arc<[Group]>, GpuError> {
         let declared = layouts().find(|(known, _)| *known == shader);
         let (_, groups) =
@@ -159,7 +159,7 @@ impl ShaderLibrary {
         constants: &[(&'static str, f64)],
         target: wgpu::TextureFormat,
     ) -> Result<Pipeline, GpuError> {
-        // Mesa's compiler does not look whether it got the memory that it asked for, and ends the program.
+        // Mesa's compiler does not check its allocations and crashes the process when one fails.
         if self.context.is_software() {
             check_room(&format!("the pipeline of {shader}"), OF_THE_COMPILER)?;
         }
@@ -205,14 +205,14 @@ impl ShaderLibrary {
     }
 }
 
-/// Where the slots of a group are declared, and the format of targets.
+/// Key of a bind-group layout: address of the declared slots, and format of targets.
 type GroupKey = (&'static [Slot], wgpu::TextureFormat);
 
-/// A shader with its override constants, whatever their order, and the format of the targets that it writes.
+/// Key of a pipeline: shader, constants in a canonical order, and format of the targets that it writes.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 struct PipelineKey {
     shader: &'static str,
-    /// Names and the bits of their values, by name.
+    /// Names and the bits of their values, sorted by name.
     constants: Vec<(&'static str, u64)>,
     target: wgpu::TextureFormat,
 }

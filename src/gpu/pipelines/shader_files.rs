@@ -1,13 +1,13 @@
-//! The text of every shader, embedded in the program.
+//! Sources of all shaders, embedded in the program.
 
-/// Names and texts of files below `shaders/`.
+/// Expands to names and contents of files below `shaders/`.
 macro_rules! shader_files {
     ($($name:literal),+ $(,)?) => {
         &[$(($name, include_str!(concat!("../../../shaders/", $name)))),+]
     };
 }
 
-/// Every shader file: its path below `shaders/`, and its text.
+/// All shader files: path below `shaders/`, and source text.
 #[cfg_attr(not(feature = "testing"), expect(unreachable_pub, reason = "the tests of shaders reach it"))]
 pub const SHADERS: &[(&str, &str)] = shader_files![
     "bounces/blocks.wgsl",

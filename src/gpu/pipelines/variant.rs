@@ -1,23 +1,23 @@
-//! What tells one pipeline of a shader from another: variants, and the override constants that follow from them.
+//! Pipeline variants of shaders, and the override constants that follow from them.
 
 use std::fmt::Debug;
 use std::hash::Hash;
 
 use crate::model::{Classification, Deposit, Kernel, Quadrature, Remains, Settings, Sides};
 
-/// Override constants of a shader, by name.
+/// Override constants and conditions of a shader, by name.
 pub(crate) type Constants = Vec<(&'static str, f64)>;
 
-/// Everything that tells one pipeline of a shader from another.
+/// Parameters of a shader that select one of its pipelines.
 pub(crate) trait Variant: Hash + Eq + Debug {
-    /// The shader's file below `shaders/`.
+    /// Returns the path of the shader below `shaders/`.
     fn shader(&self) -> &'static str;
 
-    /// The shader's override constants; the order does not count.
+    /// Returns the override constants of the shader, in any order.
     fn constants(&self) -> Constants;
 }
 
-/// A shader of which there is one pipeline.
+/// Variant of a shader that has a single pipeline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct Only(pub &'static str);
 
@@ -31,11 +31,11 @@ impl Variant for Only {
     }
 }
 
-/// A shader that follows light, of three colours or of one.
+/// Variant of a shader that follows light of one colour or of three.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct ColorVariant {
     pub shader: &'static str,
-    /// Whether all of it has one colour.
+    /// `true` if all light has the same colour.
     pub one_color: bool,
 }
 
@@ -49,11 +49,11 @@ impl Variant for ColorVariant {
     }
 }
 
-/// A reconstruction kernel, as pipelines tell them apart (`shaders/density/kernel.wgsl`).
+/// Reconstruction kernel, in a form that can be hashed (`shaders/density/kernel.wgsl`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum KernelVariant {
     BSpline,
-    /// The bits of its standard deviation, in voxels.
+    /// Gaussian; its standard deviation, in voxels, is stored as the bits of an `f64`.
     Gaussian {
         sigma_bits: u64,
     },
@@ -70,7 +70,7 @@ impl From<Kernel> for KernelVariant {
     }
 }
 
-/// How density is reconstructed at a point: kernel and quadrature.
+/// Reconstruction of density at a point: kernel, quadrature and grid boundaries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct Reconstruction {
     pub kernel: KernelVariant,
@@ -78,21 +78,22 @@ pub(crate) struct Reconstruction {
     pub ends: Ends,
 }
 
-/// Where what is shown of a volume ends with its data, as far as anything there is seen; each holds for those before it.
+/// Grid boundaries that can be visible; decides which boundary tests are compiled into the shader. Ordered: each
+/// variant includes the checks of those before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Ends {
-    /// Away from all of that.
+    /// No boundary within the reach of any kernel.
     Nowhere,
-    /// At the faces of the grid, of which no kernel reaches two that are opposite.
+    /// Faces of the grid; no kernel reaches two opposite ones.
     AtFaces,
-    /// At faces that lie so near to each other that a kernel may be cut by two.
+    /// Faces of a grid so thin that one kernel may reach two opposite ones.
     BetweenFaces,
-    /// At the faces, and where voxels are missing.
+    /// Faces of the grid and missing voxels.
     AtMissing,
 }
 
 impl Ends {
-    /// `MISSING` and `FACES`.
+    /// Returns the conditions `MISSING` and `FACES`.
     pub(crate) fn constants(self) -> [(&'static str, f64); 2] {
         let faces = match self {
             Self::Nowhere => 0.0,
@@ -104,18 +105,18 @@ impl Ends {
 }
 
 impl Reconstruction {
-    /// With a kernel and its quadrature along the ray, of what ends away from the faces of a grid without missing voxels,
-    /// as most objects do.
+    /// Creates a reconstruction without grid boundaries, as for most objects: a kernel and its quadrature along the
+    /// ray.
     pub(crate) fn new(kernel: Kernel, quadrature: Quadrature) -> Self {
         Self { kernel: kernel.into(), quadrature, ends: Ends::Nowhere }
     }
 
-    /// Of what ends there.
+    /// Returns the reconstruction with these grid boundaries.
     pub(crate) fn ending(self, ends: Ends) -> Self {
         Self { ends, ..self }
     }
 
-    /// `KERNEL`, `SIGMA`, `QUADRATURE`, `MISSING` and `FACES`.
+    /// Returns the constants `KERNEL`, `SIGMA`, `QUADRATURE`, `MISSING` and `FACES`.
     pub(crate) fn constants(self) -> Constants {
         let (code, sigma) = match self.kernel {
             KernelVariant::BSpline => (0.0, 0.6),
@@ -129,33 +130,33 @@ impl Reconstruction {
     }
 }
 
-/// How many lights a picture has.
+/// Number of lights in a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct LightCount {
     pub all: u32,
-    /// Those that material attenuates.
+    /// Number of lights that cast shadows.
     pub shadowed: u32,
 }
 
 impl LightCount {
-    /// `LIGHTS` and `SHADOWED`.
+    /// Returns the constants `LIGHTS` and `SHADOWED`.
     pub(crate) fn constants(self) -> Constants {
         vec![("LIGHTS", f64::from(self.all)), ("SHADOWED", f64::from(self.shadowed))]
     }
 }
 
-/// The sky of a picture.
+/// Treatment of the sky in a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum SkyVariant {
     None,
-    /// Nothing is in its way.
+    /// The sky is not occluded; no volume is looked up.
     Open,
-    /// A volume says how open to it places are.
+    /// Sky visibility is looked up in a volume.
     Looked,
 }
 
 impl SkyVariant {
-    /// That of a look.
+    /// Returns the variant that the settings ask for.
     pub(crate) fn of(settings: &Settings) -> Self {
         match (settings.sky.is_on(), settings.has_sky_volume()) {
             (false, _) => Self::None,
@@ -164,33 +165,33 @@ impl SkyVariant {
         }
     }
 
-    /// `SKY`.
+    /// Returns the condition `SKY`.
     pub(crate) fn constant(self) -> (&'static str, f64) {
         ("SKY", f64::from(self as u8))
     }
 }
 
-/// What tells pipelines apart of passes that shade.
+/// Variant of the shading code, shared by all passes that shade.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct ShadingVariant {
     pub lights: LightCount,
-    /// The diffuse light of shadowed lights is in one volume.
+    /// `true` if the diffuse light of shadowed lights is in one combined volume.
     pub is_combined: bool,
     pub is_cut: bool,
     pub sides: Sides,
-    /// Before voxels are spread, or after.
+    /// Classification before or after reconstruction.
     pub classification: Classification,
     pub sky: SkyVariant,
-    /// A volume says how much light has bounced.
+    /// `true` if scattered light is looked up in a volume.
     pub has_bounces: bool,
-    /// Matter scatters more light forward, or back.
+    /// `true` if the phase function is anisotropic: more light is scattered forward, or back.
     pub is_anisotropic: bool,
-    /// What is left of each light's colours differs.
+    /// `true` if transmittance differs between red, green and blue light.
     pub has_colored_shadows: bool,
 }
 
 impl ShadingVariant {
-    /// The override constants of shading.
+    /// Returns the override constants and conditions of the shading code.
     pub(crate) fn constants(self) -> Constants {
         let mut constants = self.lights.constants();
         constants.push(flag("CUT", self.is_cut));
@@ -207,17 +208,17 @@ impl ShadingVariant {
     }
 }
 
-/// A constant that is on or off.
+/// Returns a constant with the value 1 if `on`, else 0.
 pub(crate) fn flag(name: &'static str, on: bool) -> (&'static str, f64) {
     (name, f64::from(u8::from(on)))
 }
 
-/// `DEPOSIT_FRONT`.
+/// Returns the constant `DEPOSIT_FRONT`.
 pub(crate) fn deposit_constant(deposit: Deposit) -> (&'static str, f64) {
     flag("DEPOSIT_FRONT", deposit == Deposit::Front)
 }
 
-/// Whether anything is cut away, for `CUT`.
+/// Returns the value of `CUT`: true if the crop box or the clip plane removes anything.
 pub(crate) fn is_cut(remains: Remains) -> bool {
     !remains.is_everything()
 }

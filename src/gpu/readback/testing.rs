@@ -1,4 +1,4 @@
-//! What only tests ask of the renderer: damage, sheets, parts of any size.
+//! Test hooks of the renderer: damaged volumes, single sheets, parts of any size.
 
 use std::sync::Arc;
 
@@ -16,8 +16,7 @@ use crate::model::{ImageSpec, Settings};
 use crate::plan::{BouncesKey, FARTHEST, MarchTiles, Request, SkyKey, light_views};
 
 impl Renderer {
-    /// Begins a picture, as [`Self::bands`] does, in parts with no more than `edge` samples along an edge, and no
-    /// more than `samples` in all.
+    /// Begins a picture like [`Self::bands`], in parts of at most `edge` samples along an edge and `samples` in all.
     pub fn bands_of<'a>(
         &'a mut self,
         dataset: &'a Dataset,
@@ -29,8 +28,8 @@ impl Renderer {
         self.bands_within(dataset, settings, shot, LargestPart { edge, samples })
     }
 
-    /// Overwrites a light's attenuation volume, which must be complete. Tests use it to see whether
-    /// a change refills it.
+    /// Overwrites a light's attenuation volume, which must be complete, with zeros. Tests use it to detect if a
+    /// change refills the volume.
     pub fn corrupt_attenuation(&mut self, request: &Request, light: usize) -> bool {
         let Some(found) = self.light_volume(request, light) else { return false };
         let texel = found.texture.format().block_copy_size(None).unwrap_or(2);
@@ -50,10 +49,10 @@ impl Renderer {
         true
     }
 
-    /// How open to the sky each block of voxels is: V₁ along x, y and z of the scene, and V₀.
+    /// Returns the sky visibility of each block of voxels: V₁ along x, y and z of the scene, and V₀.
     ///
     /// # Errors
-    /// When the GPU cannot do it.
+    /// Returns an error if the device fails.
     pub fn openness(&mut self, dataset: &Dataset, settings: &Settings) -> Result<Vec<[f32; 4]>, GpuError> {
         let none = || GpuError::NothingDrawn("sky");
         let request = self.drawn_request(dataset, settings)?;
@@ -63,10 +62,10 @@ impl Renderer {
         self.texels(&found.value.view)
     }
 
-    /// The light that has bounced before it reaches each block of voxels: linear RGB, and 1.
+    /// Returns the scattered light of each block of voxels: linear RGB, and 1.
     ///
     /// # Errors
-    /// When the GPU cannot do it.
+    /// Returns an error if the device fails.
     pub fn bounced(&mut self, dataset: &Dataset, settings: &Settings) -> Result<Vec<[f32; 4]>, GpuError> {
         let none = || GpuError::NothingDrawn("scattering");
         let request = self.drawn_request(dataset, settings)?;
@@ -76,7 +75,7 @@ impl Renderer {
         self.texels(&found.value.view)
     }
 
-    /// Draws a small picture with volumes that are filled everywhere, and says which.
+    /// Draws a small picture with light volumes filled everywhere, and returns its request.
     fn drawn_request(&mut self, dataset: &Dataset, settings: &Settings) -> Result<Request, GpuError> {
         let options = RenderOptions { fill_everything: true, ..RenderOptions::default() };
         let settings = &*settings.as_drawn(dataset.volume());
@@ -85,17 +84,17 @@ impl Renderer {
         Ok(Request { volume: dataset.volume().id(), settings: settings.clone(), size, coarse: None })
     }
 
-    /// The texels of a texture of four channels.
+    /// Reads back the texels of a texture with four channels.
     fn texels(&self, view: &wgpu::TextureView) -> Result<Vec<[f32; 4]>, GpuError> {
         let floats = read_floats(self.context(), view.texture())?;
         Ok(floats.chunks_exact(4).map(|texel| [texel[0], texel[1], texel[2], texel[3]]).collect())
     }
 
-    /// The sheets of one view of a light: the transmittance that each slab deposits, sheet by sheet
-    /// front to back, each row by row. All are held at once, so this is for small volumes.
+    /// Returns the sheets of one view of a light: the transmittance that each slab deposits, sheet by sheet from
+    /// front to back, each row by row. For small volumes, because all sheets are held at once.
     ///
     /// # Errors
-    /// When the GPU cannot do it.
+    /// Returns an error if the device fails.
     pub fn light_sheets(
         &mut self,
         dataset: &Dataset,
@@ -115,7 +114,7 @@ impl Renderer {
         let lamp = settings.lights[light].in_scene(&settings.camera);
         let geometry = &light_views(&lamp, &settings.shadows, &gpu.volume.scene)[view];
         let count = geometry.frame.slab_count;
-        // Tools of its own: its sheets are not left to later pictures.
+        // Separate tools, so that their pool does not leave this ring to later pictures.
         let tools = Tools::new(self.context(), self.tools.shaders.clone())?;
         let sheets = Sheets::new(&tools, geometry, count, i32::from(FARTHEST))?;
         let mut encoder =
@@ -134,7 +133,7 @@ impl Renderer {
             march(gpu, (tables, None), lamp, geometry, &sheets, 0..count, tiles.of_chunk(0), &mut encoder)?;
         }
         self.context().queue.submit([encoder.finish()]);
-        // Four slabs to a texel, and room beside the sheets.
+        // Four slabs per texel, in a texture that may be larger than the sheets.
         let texels = read_floats(self.context(), &sheets.ring.texture)?;
         let (columns, rows) = (sheets.ring.texture.width() as usize, sheets.ring.texture.height() as usize);
         let [width, height] = geometry.frame.size.map(|n| n as usize);

@@ -1,5 +1,5 @@
-//! Pictures of any size: drawn in parts, handed over in bands of rows, so that neither the adapter's largest
-//! texture nor its memory limits them.
+//! Tiled rendering: pictures of any size, drawn in parts and returned in bands of rows, so that the adapter's texture
+//! limits and memory do not limit their size.
 
 use crate::data::{Dataset, Volume};
 use crate::export::Rows;
@@ -10,31 +10,31 @@ use crate::model::{Depth, ImageSpec, Settings};
 use crate::plan::PixelWindow;
 use crate::plan::picture_frame;
 
-/// Most samples of a part: a picture of high-definition television in one part, and about 100 MiB of textures.
+/// Maximum number of samples in a part: a full-HD picture in one part, and about 100 MiB of textures.
 const MOST_SAMPLES: u32 = 1 << 21;
 
-/// How large a part of a picture may be.
+/// Maximum size of a part of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct LargestPart {
-    /// Samples along an edge.
+    /// Maximum number of samples along an edge.
     pub edge: u32,
-    /// Samples in all.
+    /// Maximum number of samples in all.
     pub samples: u32,
 }
 
-/// A picture that is being made, from the top down.
+/// Picture in progress, drawn in bands from the top down.
 #[derive(Debug)]
 pub struct Bands<'a> {
     renderer: &'a mut Renderer,
     dataset: &'a Dataset,
     settings: &'a Settings,
     shot: ImageSpec,
-    /// Pixels that are drawn around each part.
+    /// Width of the margin drawn around each part, in pixels.
     margin: u32,
-    /// Those that are left, the next one last.
+    /// Bands yet to be drawn, the next one last.
     left: Vec<Vec<PixelWindow>>,
     total: usize,
-    /// Nothing of the volume is seen in the parts that are done.
+    /// `true` if the volume is not visible in the bands drawn so far.
     is_empty: bool,
 }
 
@@ -51,8 +51,7 @@ impl Renderer {
         self.bands_within(dataset, settings, shot, largest)
     }
 
-    /// Begins a picture in parts whose edges have no more than so many samples, and which have no more than so many
-    /// in all.
+    /// Begins a picture in parts of at most the given size.
     pub(crate) fn bands_within<'a>(
         &'a mut self,
         dataset: &'a Dataset,
@@ -73,20 +72,20 @@ impl Renderer {
 }
 
 impl Bands<'_> {
-    /// How many bands are done, of how many.
+    /// Returns the number of bands drawn, and the total.
     pub fn progress(&self) -> (usize, usize) {
         (self.total - self.left.len(), self.total)
     }
 
-    /// Whether nothing of the volume is seen in the bands that are done.
+    /// Returns true if the volume is not visible in the bands drawn so far.
     pub fn is_empty(&self) -> bool {
         self.is_empty
     }
 
-    /// Draws the next band. `None` after the last.
+    /// Draws the next band; `None` after the last.
     ///
     /// # Errors
-    /// When the GPU cannot do it.
+    /// Returns an error if the device fails or memory is exhausted.
     pub fn next_rows(&mut self) -> Result<Option<Rows>, GpuError> {
         let Some(parts) = self.left.pop() else { return Ok(None) };
         let width = self.shot.size[0] as usize;
@@ -102,7 +101,7 @@ impl Bands<'_> {
             let drawn = part.widened(self.margin);
             let options = RenderOptions { part: Some(drawn), ..RenderOptions::of_shot(&self.shot) };
             self.renderer.draw(self.dataset, self.settings, self.shot.size, &options)?;
-            // When something is seen, nobody asks any more.
+            // Tested only until something is visible.
             self.is_empty = self.is_empty && self.renderer.is_picture_empty()?;
             let (context, shown) = (self.renderer.context(), &self.renderer.shown()?.shown.value.texture);
             if self.shot.depth == Depth::Eight {
@@ -114,10 +113,10 @@ impl Bands<'_> {
         Ok(Some(if self.shot.depth == Depth::Eight { Rows::Bytes(bytes) } else { Rows::Floats(floats) }))
     }
 
-    /// All that is left of the picture at once.
+    /// Draws all remaining bands at once.
     ///
     /// # Errors
-    /// As [`Self::next_rows`].
+    /// Same as [`Self::next_rows`].
     pub fn all(mut self) -> Result<Rows, GpuError> {
         let mut whole = match self.shot.depth {
             Depth::Eight => Rows::Bytes(Vec::new()),
@@ -134,7 +133,8 @@ impl Bands<'_> {
     }
 }
 
-/// Pixels around a part that its own need: gradients of scattered sheets are differences of neighbours.
+/// Returns the margin that a part needs, in pixels: gradients of scattered sheets are differences of neighbouring
+/// pixels.
 fn margin(volume: &Volume, settings: &Settings, size: [u32; 2], samples: u32) -> u32 {
     if !settings.scatters() {
         return 0;
@@ -145,7 +145,7 @@ fn margin(volume: &Volume, settings: &Settings, size: [u32; 2], samples: u32) ->
     frame.gradient_steps().0.div_ceil(samples)
 }
 
-/// Puts a part of what was drawn into its place in a band.
+/// Copies a part of the drawn texels to its place in a band.
 fn lay<T: Copy>(band: &mut [T], texels: &[T], width: usize, drawn: PixelWindow, part: PixelWindow) {
     let (left, columns) = (part.first[0] as usize, part.size[0] as usize);
     let [before, above] = [0, 1].map(|axis| (part.first[axis] - drawn.first[axis]) as usize);

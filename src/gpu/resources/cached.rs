@@ -1,47 +1,47 @@
-//! A product on the GPU together with what it was made from.
+//! Cache entry: a GPU product with the key it was made from.
 
-/// A product, the key of everything that it is made from, and whether it is complete. It serves those who need
-/// that key, and is otherwise stale.
+/// Product with the key of its inputs, and a flag for its completeness. It is valid for requests with the same key,
+/// and stale for all others.
 #[derive(Debug)]
 pub(crate) struct Cached<K, T> {
     key: K,
     is_complete: bool,
-    /// The product itself.
+    /// Product itself, complete or in progress.
     pub value: T,
 }
 
 impl<K: PartialEq, T> Cached<K, T> {
-    /// A product that is yet to be filled.
+    /// Creates an entry whose product has yet to be filled.
     pub(crate) fn unfilled(key: K, value: T) -> Self {
         Self { key, is_complete: false, value }
     }
 
-    /// A product that is there at once.
+    /// Creates an entry whose product is complete from the start.
     pub(crate) fn complete(key: K, value: T) -> Self {
         Self { key, is_complete: true, value }
     }
 
-    /// What it is made from.
+    /// Returns the key of the product's inputs.
     pub(crate) fn key(&self) -> &K {
         &self.key
     }
 
-    /// Everything of it is there from now on.
+    /// Marks the product as complete.
     pub(crate) fn finish(&mut self) {
         self.is_complete = true;
     }
 
-    /// Whether everything of it is there.
+    /// Returns true if the product is complete.
     pub(crate) fn is_complete(&self) -> bool {
         self.is_complete
     }
 
-    /// Whether it is what this key asks for, and complete.
+    /// Returns true if the product is complete and was made from `key`.
     pub(crate) fn holds(&self, key: &K) -> bool {
         self.is_complete && self.key == *key
     }
 
-    /// It will be filled anew, from something else.
+    /// Marks the product as incomplete, to be filled for another key.
     pub(crate) fn restart(&mut self, key: K) {
         (self.key, self.is_complete) = (key, false);
     }

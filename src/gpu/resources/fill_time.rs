@@ -1,8 +1,8 @@
-//! How long a volume of light took to be filled.
+//! Time that a light volume took to fill.
 
 use std::time::Instant;
 
-/// From the first of its steps to the last.
+/// Stopwatch from the first step of filling a volume to the last.
 #[derive(Debug, Default)]
 pub(crate) struct FillTime {
     started: Option<Instant>,
@@ -10,17 +10,17 @@ pub(crate) struct FillTime {
 }
 
 impl FillTime {
-    /// A step is recorded, perhaps the first.
+    /// Starts the stopwatch at the first step; later calls have no effect.
     pub(crate) fn begin(&mut self) {
         self.started.get_or_insert_with(Instant::now);
     }
 
-    /// The last of its steps was recorded.
+    /// Stops the stopwatch after the last step.
     pub(crate) fn finish(&mut self) {
         self.took_ms = self.started.map(|started| started.elapsed().as_secs_f64() * 1000.0);
     }
 
-    /// Milliseconds that it took, once it is filled.
+    /// Returns the duration in milliseconds, once the volume is filled.
     pub(crate) fn took_ms(&self) -> Option<f64> {
         self.took_ms
     }

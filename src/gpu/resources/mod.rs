@@ -1,4 +1,4 @@
-//! What every pass works with: buffers and textures that are used again, dispatches, products with their keys.
+//! Resources shared by all passes: pooled buffers and textures, dispatches, cache entries.
 
 pub(super) mod cached;
 pub(super) mod fill_time;

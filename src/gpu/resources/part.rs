@@ -1,6 +1,6 @@
-//! A part of work that is cut into equal parts.
+//! Division of work into parts of equal size.
 
-/// Part `index` of `of` parts.
+/// Part `index`, from 0, of `of` parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Part {
     pub index: u32,
@@ -8,17 +8,17 @@ pub(crate) struct Part {
 }
 
 impl Part {
-    /// Whether no part comes before it.
+    /// Returns true for the first part.
     pub(crate) fn is_first(self) -> bool {
         self.index == 0
     }
 
-    /// Whether no part comes after it.
+    /// Returns true for the last part.
     pub(crate) fn is_last(self) -> bool {
         self.index + 1 == self.of
     }
 
-    /// This part of a list.
+    /// Returns the elements of a list that belong to this part.
     pub(crate) fn take<T>(self, list: &[T]) -> &[T] {
         let end_of = |parts: u32| list.len() * parts as usize / self.of as usize;
         &list[end_of(self.index)..end_of(self.index + 1)]

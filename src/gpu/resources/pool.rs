@@ -1,5 +1,5 @@
-//! What one picture leaves for the next: small buffers, bind groups and a ring of sheets. While a light or
-//! the camera is dragged, nothing is made anew.
+//! Pool of small buffers, bind groups and a ring of sheets, reused from picture to picture: dragging a light or the
+//! camera allocates nothing.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
@@ -9,10 +9,10 @@ use super::ring::Ring;
 use crate::gpu::Context;
 use crate::gpu::pipelines::binding::{Named, Pipeline};
 
-/// Bind groups that are kept at most. What they bind is as many as buffers and textures: a few dozen.
+/// Maximum number of cached bind groups. They bind a few dozen buffers and textures.
 const MOST_GROUPS: usize = 1024;
 
-/// Smallest buffer; sizes are powers of two, so that lists of changing lengths find one.
+/// Size of the smallest buffer, in bytes. Sizes are powers of two, so that lists of varying length reuse buffers.
 const SMALLEST_BUFFER: u64 = 256;
 
 /// Buffers, bind groups and a ring of sheets of one renderer.
@@ -21,16 +21,16 @@ pub(crate) struct ResourcePool(RefCell<Inner>);
 
 #[derive(Debug, Default)]
 struct Inner {
-    /// By label, size and usage.
+    /// Buffers by label, size and usage.
     shelves: BTreeMap<(&'static str, u64, u32), Shelf>,
     groups: HashMap<GroupKey, wgpu::BindGroup>,
     ring: Option<Ring>,
-    /// Groups may hold on to a ring.
+    /// Set if cached bind groups may keep a ring alive.
     binds_ring: bool,
     made: u64,
 }
 
-/// Buffers of a kind; the first `taken` are in use by what is being recorded.
+/// Buffers of one kind; the first `taken` are in use by the submission being recorded.
 #[derive(Debug, Default)]
 struct Shelf {
     buffers: Vec<wgpu::Buffer>,
@@ -51,7 +51,7 @@ enum Bound {
 }
 
 impl Bound {
-    /// `None` of kinds that no pass binds.
+    /// Returns the key of a resource; `None` for kinds that no pass binds.
     fn of(resource: &wgpu::BindingResource<'_>) -> Option<Self> {
         match resource {
             wgpu::BindingResource::Buffer(part) => {
@@ -65,20 +65,20 @@ impl Bound {
 }
 
 impl ResourcePool {
-    /// Forgets all bind groups: they would keep alive what has been dropped.
+    /// Drops all cached bind groups, which would keep dropped resources alive.
     pub(crate) fn forget_groups(&self) {
         self.0.borrow_mut().groups.clear();
     }
 
-    /// Begins a submission. All buffers are free: what is written to them from now on comes after what was
-    /// submitted before.
+    /// Begins a submission, for which all buffers are free again: writes from now on are ordered after the previous
+    /// submission.
     pub(crate) fn next_submission(&self) {
         for shelf in self.0.borrow_mut().shelves.values_mut() {
             shelf.taken = 0;
         }
     }
 
-    /// Forgets everything, as with another volume.
+    /// Drops all pooled resources, for example when another volume is loaded.
     pub(crate) fn clear(&self) {
         let inner = &mut *self.0.borrow_mut();
         inner.shelves.clear();
@@ -86,7 +86,7 @@ impl ResourcePool {
         inner.ring = None;
     }
 
-    /// A buffer that begins with `contents`, for one submission. It may be longer.
+    /// Returns a buffer that begins with `contents`, for one submission. It may be longer.
     pub(crate) fn buffer<T: bytemuck::NoUninit>(
         &self,
         context: &Context,
@@ -97,7 +97,7 @@ impl ResourcePool {
         self.buffer_with_room(context, label, contents, usage, SMALLEST_BUFFER)
     }
 
-    /// A buffer for one submission that begins with `contents`, of at least `room` bytes.
+    /// Returns a buffer of at least `room` bytes that begins with `contents`, for one submission.
     pub(crate) fn buffer_with_room<T: bytemuck::NoUninit>(
         &self,
         context: &Context,
@@ -125,7 +125,7 @@ impl ResourcePool {
         buffer
     }
 
-    /// As [`pass::bind`], once for the same resources.
+    /// Returns a bind group as [`pass::bind`] makes it, cached by the resources that it binds.
     pub(crate) fn bind(
         &self,
         context: &Context,
@@ -151,12 +151,12 @@ impl ResourcePool {
         kept.clone()
     }
 
-    /// The ring of sheets that was left behind.
+    /// Takes the ring of sheets that the previous light volume left.
     pub(crate) fn take_ring(&self) -> Option<Ring> {
         self.0.borrow_mut().ring.take()
     }
 
-    /// Leaves a ring of sheets to the next light volume, unless a larger one is there.
+    /// Stores a ring of sheets for the next light volume, unless a larger one is stored.
     pub(crate) fn leave_ring(&self, ring: Ring) {
         let inner = &mut *self.0.borrow_mut();
         if inner.ring.as_ref().is_none_or(|known| known.bytes() < ring.bytes()) {
@@ -164,7 +164,7 @@ impl ResourcePool {
         }
     }
 
-    /// Takes note that a ring is made: groups that bind the one before would keep it alive.
+    /// Records that a new ring was made, and drops the bind groups that would keep the previous one alive.
     pub(crate) fn made_ring(&self) {
         let inner = &mut *self.0.borrow_mut();
         inner.made += 1;
@@ -172,7 +172,7 @@ impl ResourcePool {
         inner.binds_ring = true;
     }
 
-    /// Drops the ring, because a picture fills no light volume.
+    /// Drops the ring, for pictures that fill no light volume.
     pub(crate) fn drop_ring(&self) {
         let inner = &mut *self.0.borrow_mut();
         inner.ring = None;
@@ -181,12 +181,12 @@ impl ResourcePool {
         }
     }
 
-    /// Bytes of the ring that waits.
+    /// Returns the size of the stored ring, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         self.0.borrow().ring.as_ref().map_or(0, Ring::bytes)
     }
 
-    /// How many buffers and bind groups were made so far, and sheets.
+    /// Returns the number of buffers, bind groups and rings made so far.
     pub(crate) fn made(&self) -> u64 {
         self.0.borrow().made
     }

@@ -1,28 +1,28 @@
-//! From the GPU back to the CPU.
+//! Readback of textures and buffers from the GPU to host memory.
 
 use crate::gpu::{Context, GpuError};
 
-/// A light's attenuation volume, read back.
+/// Attenuation volume of a light, read back.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Attenuation {
-    /// Voxels along x, y, z.
+    /// Number of voxels along x, y and z.
     pub dims: [usize; 3],
-    /// Data voxels per voxel of this volume, along an axis.
+    /// Number of data voxels per voxel of this volume, along an axis.
     pub divisor: usize,
-    /// 0 (dark) … 1 (fully lit), x fastest; of coloured shadows the luminance.
+    /// Attenuation from 0 (fully shadowed) to 1 (fully lit), x fastest; the luminance where shadows are coloured.
     pub values: Vec<f32>,
-    /// Where shadows are coloured, the same of red, green and blue light; else none.
+    /// Attenuation of red, green and blue light where shadows are coloured; else empty.
     pub colors: Vec<[f32; 3]>,
 }
 
-/// The texels of a texture's first level, tightly packed, row by row and slice by slice.
+/// Reads the texels of a texture's first level, tightly packed, row by row and slice by slice.
 pub(crate) fn read_texture(context: &Context, texture: &wgpu::Texture) -> Result<Vec<u8>, GpuError> {
     let size = texture.size();
     let texel = texture.format().block_copy_size(None).unwrap_or(4);
     let row = size.width * texel;
     let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let mut bytes = Vec::with_capacity((row * size.height) as usize * size.depth_or_array_layers as usize);
-    // A slice at a time: a volume may be larger than a buffer can be.
+    // One slice at a time: a volume may be larger than the largest buffer.
     let buffer = context.empty_buffer(&wgpu::BufferDescriptor {
         label: Some("Readback::buffer"),
         size: u64::from(padded) * u64::from(size.height),
@@ -65,7 +65,7 @@ pub(crate) fn read_texture(context: &Context, texture: &wgpu::Texture) -> Result
     Ok(bytes)
 }
 
-/// The first word of a buffer.
+/// Reads the first 32-bit word of a buffer.
 pub(crate) fn read_word(context: &Context, source: &wgpu::Buffer) -> Result<u32, GpuError> {
     let buffer = context.empty_buffer(&wgpu::BufferDescriptor {
         label: Some("Readback::word"),
@@ -86,7 +86,7 @@ pub(crate) fn read_word(context: &Context, source: &wgpu::Buffer) -> Result<u32,
     Ok(u32::from_le_bytes([view[0], view[1], view[2], view[3]]))
 }
 
-/// The channels of a float texture's texels.
+/// Reads the channels of a float texture's texels, decoded to `f32`.
 pub(crate) fn read_floats(context: &Context, texture: &wgpu::Texture) -> Result<Vec<f32>, GpuError> {
     let bytes = read_texture(context, texture)?;
     Ok(match texture.format() {

@@ -1,29 +1,29 @@
-//! The textures of sheets, as one light volume leaves them to the next.
+//! Ring of sheet textures, reused from one light volume to the next.
 
 use crate::gpu::pipelines::binding::ring_format;
 use crate::gpu::{Context, GpuError};
 
-/// A ring has at most so many times the texels that are needed, or [`SMALL_RING`].
+/// Maximum ratio of a ring's texels to the texels needed, above [`SMALL_RING`].
 const MOST_ROOM: u64 = 2;
-/// Texels of a ring that is not worth making smaller, 8 MiB: for coarse previews and small volumes.
+/// Number of texels (8 MiB) below which a ring is never shrunk: for coarse previews and small volumes.
 const SMALL_RING: u64 = 1 << 20;
 
-/// A ring of layers through which the slabs of a light stream, and the running transmittance behind them.
+/// Ring of layers through which the slabs of a light stream, and the running transmittance behind them.
 #[derive(Debug)]
 pub(crate) struct Ring {
-    /// Deposited transmittance, four sheets in a texel.
+    /// Deposited transmittance, four sheets per texel.
     pub texture: wgpu::Texture,
-    /// A view of all layers.
+    /// View of all layers, as an array.
     pub view: wgpu::TextureView,
-    /// A float for each pixel of a sheet.
+    /// Running transmittance: a float for each pixel of a sheet.
     pub transmittance: wgpu::Buffer,
 }
 
 impl Ring {
-    /// A ring of so many columns, rows and layers.
+    /// Creates a ring of this many columns, rows and layers.
     ///
     /// # Errors
-    /// When memory is out.
+    /// Returns an error if memory is exhausted.
     pub(crate) fn new(context: &Context, [width, height, layers]: [u32; 3]) -> Result<Self, GpuError> {
         let texture = context.texture(&wgpu::TextureDescriptor {
             label: Some("Ring::texture"),
@@ -43,7 +43,7 @@ impl Ring {
             usage: wgpu::BufferUsages::STORAGE,
             mapped_at_creation: false,
         });
-        // An array even where it has one layer.
+        // An array view is required even if there is a single layer.
         let view = texture.create_view(&wgpu::TextureViewDescriptor {
             dimension: Some(wgpu::TextureViewDimension::D2Array),
             ..Default::default()
@@ -51,8 +51,8 @@ impl Ring {
         Ok(Self { texture, view, transmittance })
     }
 
-    /// This ring, if so many columns, rows and layers fit and are not much less; otherwise the size of a ring to take
-    /// its place, which holds both if it can.
+    /// Returns this ring if the needed columns, rows and layers fit and fill a fair part of it; otherwise, as the
+    /// error, the size of a replacement, which covers both needs unless that would be too large.
     pub(crate) fn or_larger(self, needed: [u32; 3]) -> Result<Self, [u32; 3]> {
         let size = self.texture.size();
         let held = [size.width, size.height, size.depth_or_array_layers];
@@ -67,7 +67,7 @@ impl Ring {
         }
     }
 
-    /// Bytes of the ring and of the running transmittance.
+    /// Returns the size of the ring and the running transmittance, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         let size = self.texture.size();
         let texel = u64::from(self.texture.format().block_copy_size(None).unwrap_or(8));

@@ -1,23 +1,23 @@
-//! What every pass works with, whichever volume there is.
+//! Device, pipelines and pool: the tools of every pass, independent of the volume.
 
 use super::pool::ResourcePool;
 use crate::gpu::{Context, GpuError, ShaderLibrary};
 
-/// The device, its pipelines, and resources that pictures leave for each other.
+/// Device with its pipelines and the resources that successive pictures share.
 #[derive(Debug)]
 pub(crate) struct Tools {
     pub context: Context,
     pub shaders: ShaderLibrary,
     pub pool: ResourcePool,
-    /// Bound where a shader declares a light volume and a light has none.
+    /// 1 × 1 × 1 texture that is bound where a shader declares a texture which the pass does not need.
     pub placeholder: wgpu::TextureView,
 }
 
 impl Tools {
-    /// Tools for a device.
+    /// Creates the tools for a device.
     ///
     /// # Errors
-    /// When not even one texel can be had.
+    /// Returns an error if memory is exhausted.
     pub(crate) fn new(context: &Context, shaders: ShaderLibrary) -> Result<Self, GpuError> {
         let texel = context.texture(&wgpu::TextureDescriptor {
             label: Some("Tools::placeholder"),

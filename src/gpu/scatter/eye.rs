@@ -1,4 +1,4 @@
-//! The eye pass over scattered sheets.
+//! Eye pass of the scattering engine: compositing of scattered sheets.
 
 use std::ops::Range;
 
@@ -17,17 +17,16 @@ use crate::gpu::{GpuError, RenderOptions};
 use crate::model::{Classification, Settings, SheetOrder};
 use crate::plan::{BrickSet, SheetFrame};
 
-/// Slabs per submission: each is splatted and composited, which takes a software adapter some
-/// milliseconds.
+/// Number of slabs per submission: each is splatted and composited, which takes a software adapter some milliseconds.
 pub(crate) const SLABS_PER_STEP: u32 = 2;
 
-/// What tells one pipeline that composites sheets from another.
+/// Pipeline variant of the pass that composites sheets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct ScatterEyeVariant {
     shading: ShadingVariant,
     sampling: SamplingVariant,
     sheets: ScatterVariant,
-    /// Pixels are wider than voxels somewhere.
+    /// `true` if pixels are wider than voxels somewhere.
     is_stretched: bool,
 }
 
@@ -45,18 +44,18 @@ impl Variant for ScatterEyeVariant {
     }
 }
 
-/// The eye's sheets, and what its rays have gathered so far.
+/// Sheets of the eye, with the colour and opacity that its rays have accumulated.
 #[derive(Debug)]
 pub(crate) struct EyeScatter {
     scatterer: Scatterer,
-    /// In place of sheets, if every footprint is composited.
+    /// Splatting of single footprints; `None` if sheets are composited.
     footprints: Option<Footprints>,
-    /// Distances in bricks to the nearest that the eye sees.
+    /// Distances, in bricks, to the nearest brick visible to the eye.
     distances: wgpu::TextureView,
-    /// Colour and opacity so far.
+    /// Accumulated colour and opacity of each ray.
     rays: wgpu::Buffer,
     clamped: wgpu::Sampler,
-    /// Slabs to either side between which gradients are differences.
+    /// Distance, in slabs to either side, of the sheets whose difference is the gradient.
     ahead: u32,
 }
 
@@ -72,7 +71,7 @@ impl EyeScatter {
     ) -> Result<Self, GpuError> {
         let sampling = &settings.sampling;
         let order = sampling.order;
-        // Slices of voxels are a voxel apart.
+        // Slices of voxels are one voxel apart.
         let ahead = if order == SheetOrder::ImageAligned { frame.gradient_steps().1 } else { 1 };
         let kernel = Splatting { kernel: sampling.kernel, quadrature: sampling.quadrature, order };
         let seen = splatted_bricks(frame, &tables.eye.occupied, options);
@@ -159,14 +158,14 @@ impl EyeScatter {
         let grid = gpu.uniform("Volume::grid", volume.grid(0));
         let of_lights = light_bind_group(gpu, &pipeline, looked_up);
         for k in slabs {
-            // The slabs ahead are there when their neighbours need them.
+            // Slabs ahead are splatted before a slab that takes gradients from them is composited.
             let from = if k == 0 { 0 } else { k + self.ahead };
             for splatted in from..=k + self.ahead {
                 if self.scatterer.is_filled(splatted) {
                     self.scatterer.splat(gpu, scattering, splatted, encoder)?;
                 }
             }
-            // Nothing to composite, and nothing to make room for.
+            // Empty sheets need neither clearing nor compositing.
             let touched = tables.eye.shows_empty_space()
                 || self.scatterer.is_filled(k)
                 || k >= self.ahead && self.scatterer.is_filled(k - self.ahead);
@@ -201,7 +200,7 @@ impl EyeScatter {
         if is_last { self.resolve(gpu, picture, encoder) } else { Ok(()) }
     }
 
-    /// Writes the picture.
+    /// Writes the accumulated rays into the picture.
     fn resolve(
         &self,
         gpu: Gpu<'_>,
@@ -230,20 +229,20 @@ impl EyeScatter {
         Ok(())
     }
 
-    /// Bytes of sheets and rays.
+    /// Returns the size of sheets and rays, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         self.scatterer.bytes() + self.rays.size()
     }
 }
 
-/// Bricks whose voxels can reach a sample that shows anything, or one between which and that sample a
-/// gradient is taken.
+/// Returns the bricks with voxels that can reach a visible sample, or a neighbour of one from which its gradient is
+/// taken.
 pub(crate) fn splatted_bricks(frame: &SheetFrame, occupied: &BrickSet, options: &RenderOptions) -> BrickSet {
     if !options.empty_space_skipping {
         return BrickSet::full(occupied.dims);
     }
     let widest = frame.widest_stretch();
-    // A kernel's radius, at most √2 of it along a slanted axis, and a gradient's step of one pixel or voxel.
+    // Kernel radius (at most √2 of it along a slanted axis), plus the gradient's step of one pixel or voxel.
     let reach = (2.0 * std::f64::consts::SQRT_2 + 1.5) * widest + frame.slab / frame.voxel_edge;
     occupied.dilated((reach / BRICK_EDGE as f64).ceil() as usize)
 }

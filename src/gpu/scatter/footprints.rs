@@ -1,5 +1,5 @@
-//! Every footprint composited by itself: voxels of a slice in turns, so that no two of one dispatch
-//! touch a pixel.
+//! Compositing of every footprint separately: the voxels of a slice are drawn in phases, so that no two footprints of
+//! a dispatch share a pixel.
 
 use super::splat::{ScatterVariant, Scatterer};
 use super::voxels::Scattering;
@@ -15,7 +15,7 @@ use crate::gpu::resources::pass;
 use crate::gpu::volume::{Gpu, Levels};
 use crate::model::Classification;
 
-/// What tells one pipeline that composites footprints from another.
+/// Pipeline variant of the pass that composites footprints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct FootprintsVariant {
     shading: ShadingVariant,
@@ -34,38 +34,37 @@ impl Variant for FootprintsVariant {
     }
 }
 
-/// What a slice is composited from, and into.
+/// Inputs and target of compositing a slice.
 #[derive(Clone, Copy)]
 pub(crate) struct Inputs<'a> {
     pub scattering: &'a Scattering,
     pub eye: &'a EyePass,
-    /// What shaders know of the eye.
+    /// Uniform buffer of the eye.
     pub eye_uniform: &'a wgpu::Buffer,
-    /// The eye's transfer function.
+    /// Transfer function of the eye.
     pub table: &'a wgpu::Buffer,
     /// Light volumes in the order of the lights.
     pub looked_up: LookedUp<'a>,
-    /// Colour and opacity so far.
+    /// Accumulated colour and opacity of each ray.
     pub rays: &'a wgpu::Buffer,
     pub clamped: &'a wgpu::Sampler,
 }
 
-/// The turns of a slice.
+/// Phases of a slice, each with footprints that do not overlap.
 #[derive(Debug)]
 pub(crate) struct Footprints {
     phases: Vec<wgpu::Buffer>,
 }
 
 impl Footprints {
-    /// Lays out the turns.
+    /// Creates the phases.
     ///
-    /// Two footprints of radius 2s (in voxels, s the stretch) are apart when their voxels are
-    /// 4s · √3 apart in a slice: the line of sight leans at most as far from its axis as a cube's
-    /// diagonal.
+    /// Footprints of radius 2s (in voxels, s the stretch) do not overlap if their voxels are 4s · √3 apart in a
+    /// slice: the line of sight deviates from its axis at most as far as a cube's diagonal.
     pub(crate) fn new(gpu: Gpu<'_>, scatterer: &Scatterer) -> Result<Self, GpuError> {
         let apart = 4.0 * 3f64.sqrt() * scatterer.widest();
         let stride = (apart / BRICK_EDGE as f64).ceil() as u32;
-        // A picture with pixels so wide is smaller than a thumbnail.
+        // Pictures with pixels this wide are smaller than thumbnails.
         if stride > 4 {
             return Err(GpuError::OverLimit {
                 what: "the width of footprints, in bricks,".to_owned(),
@@ -94,7 +93,7 @@ impl Footprints {
         Ok(Self { phases })
     }
 
-    /// Composites slice `k`.
+    /// Composites slice `k` into the rays.
     pub(crate) fn draw(
         &self,
         gpu: Gpu<'_>,
@@ -107,7 +106,7 @@ impl Footprints {
             return Ok(());
         }
         let Gpu { context, shaders, .. } = gpu;
-        // Their densities are those of voxels.
+        // Footprints carry the densities of voxels, which are classified one by one.
         let shading = ShadingVariant { classification: Classification::Post, ..eye.shading_variant() };
         let variant = FootprintsVariant { shading, footprints: scatterer.variant() };
         let pipeline = shaders.pipeline(&variant)?;

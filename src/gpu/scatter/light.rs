@@ -1,5 +1,5 @@
-//! The light pass over scattered sheets: splats voxels, marches the light, splats the sheets back into
-//! the grid and divides by the weights.
+//! Light pass of the scattering engine: splats voxels, marches light through the sheets, splats the sheets back into
+//! the grid, and divides by the weights.
 
 use std::ops::Range;
 
@@ -18,15 +18,15 @@ use crate::gpu::{GpuError, RenderOptions};
 use crate::model::{Classification, Deposit, SceneLight, Settings, SheetOrder};
 use crate::plan::{BrickSet, LightView, scatter_reach_bricks};
 
-/// What tells one pipeline of the march over scattered sheets from another.
+/// Pipeline variant of the march over scattered sheets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct ScatterMarchVariant {
     is_cut: bool,
     deposit: Deposit,
     sheets: ScatterVariant,
-    /// Pixels are wider than voxels somewhere.
+    /// `true` if pixels are wider than voxels somewhere.
     is_stretched: bool,
-    /// Bricks around a sample's own that it sees.
+    /// Reach of a sample's kernel, in bricks around its own.
     dilation: i32,
 }
 
@@ -48,25 +48,25 @@ impl Variant for ScatterMarchVariant {
     }
 }
 
-/// The sheets of one view of a light, and what was splatted back into the grid.
+/// Sheets of one view of a light, and the sums that are splatted back into the grid.
 #[derive(Debug)]
 pub(crate) struct LightScatter {
     scatterer: Scatterer,
-    /// Σ D·h per light voxel.
+    /// Sums of deposits times weights, Σ D·h, per light voxel.
     light: wgpu::Buffer,
-    /// The weight volume: Σ h per light voxel.
+    /// Weight volume: sums of weights, Σ h, per light voxel.
     weights: wgpu::Buffer,
-    /// Distances in bricks to the nearest that is read, and to the nearest that attenuates light.
+    /// Distances, in bricks, to the nearest brick whose sheets are read, and to the nearest that attenuates light.
     distances: wgpu::TextureView,
     dilation: i32,
-    /// What the slabs that share a texel of the ring deposit.
+    /// Deposits of the slabs that share a texel of the ring.
     deposits: wgpu::Buffer,
-    /// Data voxels per light voxel.
+    /// Number of data voxels per light voxel, along an axis.
     divisor: usize,
 }
 
 impl LightScatter {
-    /// Prepares a view; only sheets in the bricks of `read` will be splatted back, or all.
+    /// Prepares a view. Sheets are splatted back in the bricks of `read` only, or everywhere without it.
     pub(crate) fn new(
         gpu: Gpu<'_>,
         scattering: &Scattering,
@@ -116,7 +116,7 @@ impl LightScatter {
         })
     }
 
-    /// Splats some slabs and marches the light through them.
+    /// Splats some slabs and marches light through them.
     #[expect(clippy::too_many_arguments, reason = "what the gathering pass takes, and two more")]
     pub(crate) fn march(
         &self,
@@ -211,7 +211,7 @@ impl LightScatter {
         Ok(())
     }
 
-    /// Divides light by weights into the listed bricks of the light volume.
+    /// Divides light by weights, into the listed bricks of the light volume.
     pub(crate) fn normalise(
         &self,
         gpu: Gpu<'_>,
@@ -252,7 +252,7 @@ impl LightScatter {
         Ok(())
     }
 
-    /// Bytes of sheets, light and weights.
+    /// Returns the size of sheets, light and weights, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         self.scatterer.bytes() + self.light.size() + self.weights.size() + self.deposits.size()
     }

@@ -1,4 +1,4 @@
-//! Which bricks are splatted into which sheet.
+//! Lists of the bricks that are splatted into each sheet.
 
 use glam::{DAffine3, DVec3};
 
@@ -6,8 +6,9 @@ use crate::data::BRICK_EDGE;
 use crate::gpu::volume::listed_bricks;
 use crate::plan::{SheetFrame, SliceOrder};
 
-/// For every slab the bricks whose voxels reach it, with where their voxels begin; lists start at the
-/// first array's entries.
+/// Lists for every slab the bricks with voxels that reach it, and the word where those voxels begin.
+///
+/// Returns the start of each slab's list, and the lists themselves. `half_depth` is half the depth of a kernel.
 pub(crate) fn slab_lists(
     frame: &SheetFrame,
     sheets_from_index: &DAffine3,
@@ -36,7 +37,7 @@ pub(crate) fn slab_lists(
     joined(lists)
 }
 
-/// For every slice the bricks that it cuts, as [`slab_lists`].
+/// Lists for every slice the bricks that it cuts, in the format of [`slab_lists`].
 pub(crate) fn slice_lists(
     slices: &SliceOrder,
     bricks: impl Iterator<Item = ([usize; 3], u32)>,
@@ -48,7 +49,8 @@ pub(crate) fn slice_lists(
     joined((0..slices.count).map(|k| layers[slices.slice(k) / BRICK_EDGE].clone()).collect())
 }
 
-/// Lists behind each other, and where each begins; the last entry is where all end.
+/// Concatenates lists. Returns the start of each, with the end of the last as an additional entry, and the
+/// concatenation.
 fn joined(lists: Vec<Vec<[u32; 2]>>) -> (Vec<u32>, Vec<[u32; 2]>) {
     let mut starts = vec![0];
     let mut all: Vec<[u32; 2]> = Vec::new();
@@ -56,7 +58,7 @@ fn joined(lists: Vec<Vec<[u32; 2]>>) -> (Vec<u32>, Vec<[u32; 2]>) {
         all.extend(list);
         starts.push(all.len() as u32);
     }
-    // A binding cannot be empty.
+    // Bindings must not be empty.
     if all.is_empty() {
         all.push([0; 2]);
     }

@@ -1,5 +1,4 @@
-//! Forward splatting: voxels into the sheets of one stack, slab after slab; what all scattering passes
-//! share.
+//! Forward splatting of voxels into a stack of sheets, slab by slab; shared by all scattering passes.
 
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -17,43 +16,43 @@ use crate::gpu::{Context, GpuError};
 use crate::model::{Kernel, Quadrature, SheetOrder};
 use crate::plan::{BrickSet, SheetFrame, SliceOrder};
 
-/// A stack of sheets that voxels are splatted into.
+/// Stack of sheets that voxels are splatted into.
 #[derive(Debug)]
 pub(crate) struct Scatterer {
-    /// Rays and slabs.
+    /// Geometry of rays and slabs.
     pub frame: SheetFrame,
     variant: ScatterVariant,
-    /// Slices of voxels, if sheets are along the volume.
+    /// Slices of voxels, if sheets are aligned with the volume.
     slices: Option<SliceOrder>,
-    /// What does not change from slab to slab.
+    /// Parts of the uniform that are the same for all slabs.
     uniform: uniforms::Scatter,
-    /// Half a kernel's extents in (w·i, w·j, z), where it is not stretched.
+    /// Half extents of an unstretched kernel in (w·i, w·j, z).
     half: DVec3,
-    /// How many times wider kernels are where they are widest.
+    /// Maximum stretch of kernels.
     widest: f64,
-    /// Bricks, slab by slab.
+    /// Bricks of all slabs, slab by slab.
     bricks: wgpu::Buffer,
-    /// Bricks of slab k are `starts[k] .. starts[k + 1]` of the list.
+    /// Starts of the slabs' lists: slab k has the bricks `starts[k] .. starts[k + 1]`.
     starts: Vec<u32>,
-    /// Sums, as integers.
+    /// Sums per pixel, as fixed-point integers.
     pub sheets: wgpu::Buffer,
     footprints: wgpu::Buffer,
     table: wgpu::Buffer,
 }
 
-/// What of a voxel is splatted.
+/// Quantity that is splatted for each voxel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Splat {
-    /// The voxel's density.
+    /// Density, classified after summation.
     Density,
-    /// The voxel's extinction, for lights.
+    /// Extinction, for lights.
     Extinction,
-    /// The voxel's density, colour and extinction, for the eye.
+    /// Density, colour and extinction, for the eye.
     Material,
 }
 
 impl Splat {
-    /// `SPLAT` of `scatter/slab.wgsl`.
+    /// Returns the constant `SPLAT` of `scatter/slab.wgsl`.
     pub(crate) fn constant(self) -> (&'static str, f64) {
         let code = match self {
             Self::Density => 0.0,
@@ -63,7 +62,7 @@ impl Splat {
         ("SPLAT", code)
     }
 
-    /// Sums per pixel.
+    /// Returns the number of sums per pixel.
     fn sums(self) -> u32 {
         match self {
             Self::Density | Self::Extinction => 1,
@@ -72,7 +71,7 @@ impl Splat {
     }
 }
 
-/// How voxels are splatted.
+/// Parameters of splatting: kernel, quadrature and order.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Splatting {
     pub kernel: Kernel,
@@ -80,7 +79,7 @@ pub(crate) struct Splatting {
     pub order: SheetOrder,
 }
 
-/// What tells one pipeline of the scattering passes from another.
+/// Pipeline variant shared by the scattering passes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct ScatterVariant {
     pub reconstruction: Reconstruction,
@@ -89,12 +88,12 @@ pub(crate) struct ScatterVariant {
 }
 
 impl ScatterVariant {
-    /// The variant of one of the passes.
+    /// Creates the variant of one of the passes.
     pub(crate) fn of(self, shader: &'static str) -> ScatterPass {
         ScatterPass { shader, variant: self }
     }
 
-    /// `ORDER` and `SPLAT`: what passes know that do not evaluate kernels.
+    /// Returns `ORDER` and `SPLAT`, the constants of passes that evaluate no kernels.
     pub(crate) fn sheet_constants(self) -> [(&'static str, f64); 2] {
         let order = match self.order {
             SheetOrder::ImageAligned => 0.0,
@@ -104,7 +103,7 @@ impl ScatterVariant {
         [("ORDER", order), self.splat.constant()]
     }
 
-    /// All that there is.
+    /// Returns all constants of passes that evaluate kernels.
     pub(crate) fn constants(self) -> Constants {
         let mut constants = self.reconstruction.constants();
         constants.extend(self.sheet_constants());
@@ -112,7 +111,7 @@ impl ScatterVariant {
     }
 }
 
-/// One of the passes that evaluate kernels.
+/// Pipeline variant of a pass that evaluates kernels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct ScatterPass {
     shader: &'static str,
@@ -130,7 +129,7 @@ impl Variant for ScatterPass {
 }
 
 impl Scatterer {
-    /// Prepares a stack of sheets of which `layers` are kept. Only bricks of `seen` are splatted.
+    /// Prepares a stack of sheets, of which `layers` are stored at a time. Only bricks of `seen` are splatted.
     pub(crate) fn new(
         gpu: Gpu<'_>,
         voxels: &ScatterVoxels,
@@ -194,7 +193,7 @@ impl Scatterer {
         })
     }
 
-    /// This stack seen from a light volume: `divisor` data voxels per light voxel.
+    /// Sets the parameters for splatting back into a light volume, with `divisor` data voxels per light voxel.
     #[must_use]
     pub(crate) fn towards_grid(
         mut self,
@@ -209,40 +208,39 @@ impl Scatterer {
         self
     }
 
-    /// What tells pipelines of its passes from others.
+    /// Returns the pipeline variant of the stack's passes.
     pub(crate) fn variant(&self) -> ScatterVariant {
         self.variant
     }
 
-    /// Sheets of the stack.
+    /// Returns the number of sheets in the stack.
     pub(crate) fn sheet_count(&self) -> u32 {
         self.starts.len() as u32 - 1
     }
 
-    /// Bricks, sheet by sheet.
+    /// Returns the list of bricks, sheet by sheet.
     pub(crate) fn bricks(&self) -> &wgpu::Buffer {
         &self.bricks
     }
 
-    /// Footprint tables.
+    /// Returns the footprint tables.
     pub(crate) fn footprints(&self) -> &wgpu::Buffer {
         &self.footprints
     }
 
-    /// How many times wider kernels are where they are widest.
+    /// Returns the maximum stretch of kernels.
     pub(crate) fn widest(&self) -> f64 {
         self.widest
     }
 
-    /// Whether anything is splatted into slab `k`.
+    /// Returns true if any brick is splatted into slab `k`.
     pub(crate) fn is_filled(&self, k: u32) -> bool {
         k < self.sheet_count() && self.starts[k as usize] < self.starts[k as usize + 1]
     }
 
-    /// What shaders know about slab `k`, for kernels that are nowhere narrower than `least_stretch`
-    /// voxels per voxel.
+    /// Builds the uniform of slab `k`, for kernels of at least `least_stretch` times the voxels' width.
     pub(crate) fn uniform(&self, k: u32, least_stretch: f64) -> uniforms::Scatter {
-        // A slice of voxels has no depth of its own.
+        // Slices of voxels have no depth of their own, and so one stretch for all.
         let stretch = if self.slices.is_some() {
             self.widest
         } else {
@@ -261,13 +259,13 @@ impl Scatterer {
         }
     }
 
-    /// What shaders know of a slab, as a buffer.
+    /// Creates the uniform buffer of slab `k`.
     pub(crate) fn uniform_buffer(&self, context: &Context, k: u32, least_stretch: f64) -> wgpu::Buffer {
         let uniform = self.uniform(k, least_stretch);
         context.buffer("Scatterer::uniform", &[uniform], wgpu::BufferUsages::UNIFORM)
     }
 
-    /// The bind group of passes with footprints.
+    /// Creates the bind group of passes with footprints.
     pub(crate) fn bind_group(
         &self,
         context: &Context,
@@ -282,7 +280,7 @@ impl Scatterer {
         pass::bind(context, "Scatterer::bind_group", pipeline, 1, &entries)
     }
 
-    /// Splats the voxels of slab `k`, and counts them.
+    /// Splats the voxels of slab `k`, and counts the footprints.
     pub(crate) fn splat(
         &self,
         gpu: Gpu<'_>,
@@ -312,13 +310,13 @@ impl Scatterer {
         Ok(())
     }
 
-    /// Bytes of sheets and lists.
+    /// Returns the size of sheets and lists, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         self.sheets.size() + self.bricks.size()
     }
 }
 
-/// Integer sums, one per pixel of so many layers; they begin at zero.
+/// Creates a zeroed buffer of integer sums, one per pixel of each layer.
 pub(crate) fn sums(
     context: &Context,
     label: &'static str,
@@ -343,7 +341,7 @@ pub(crate) fn sums(
     }))
 }
 
-/// The round kernel that stands for one: that of the same variance, ⅓ of the other two.
+/// Returns the isotropic kernel that replaces one: a Gaussian of the same variance, ⅓ for the others.
 fn round(kernel: Kernel) -> Kernel {
     match kernel {
         Kernel::Gaussian { .. } => kernel,
@@ -351,16 +349,15 @@ fn round(kernel: Kernel) -> Kernel {
     }
 }
 
-/// `ORDER` of `scatter/slab.wgsl`.
-/// Index space to (w·i, w·j, z), where w = 1 + z · `inverse_distance`: the inverse of the frame's rays,
-/// point = origin + w·i · right + w·j · down + z · forward.
+/// Returns the map from index space to (w·i, w·j, z), where w = 1 + z · `inverse_distance`: the inverse of the
+/// frame's rays, point = origin + w·i · right + w·j · down + z · forward.
 fn sheets_from_index(frame: &SheetFrame) -> DAffine3 {
     let matrix3 = DMat3::from_cols(frame.origin.per_i, frame.origin.per_j, frame.direction.base).inverse();
     DAffine3 { matrix3, translation: -(matrix3 * frame.origin.base) }
 }
 
-/// Half a kernel's extents in (w·i, w·j, z). That of the Gaussian is a cylinder along the ray; the
-/// others are cubes along the axes of the grid.
+/// Returns half the extents of a kernel in (w·i, w·j, z). The Gaussian is bounded by a cylinder along the ray, others
+/// by cubes along the axes of the grid.
 fn half_extents(frame: &SheetFrame, sheets_from_index: &DAffine3, kernel: Kernel) -> DVec3 {
     let rows = sheets_from_index.matrix3.transpose();
     if !matches!(kernel, Kernel::Gaussian { .. }) {
@@ -371,7 +368,7 @@ fn half_extents(frame: &SheetFrame, sheets_from_index: &DAffine3, kernel: Kernel
                 rows.z_axis.abs().element_sum(),
             );
     }
-    // A point of the cylinder is off the voxel by up to the radius along the ray and by as much across.
+    // A point of the cylinder is up to the radius away from the voxel along the ray, and as far across it.
     let [w, h] = frame.size.map(f64::from);
     let depth = rows.z_axis.length();
     let deepest = [(0.0, 0.0), (w, 0.0), (0.0, h), (w, h)]

@@ -1,4 +1,4 @@
-//! In which batches light is followed, and how much room their rays take.
+//! Batches of directions in which light is swept through blocks, and the size of their textures.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -6,26 +6,30 @@ use rayon::prelude::*;
 use crate::gpu::pipelines::uniforms::MAX_SKY_RAYS;
 use crate::plan::{SweepFrame, SweepTiles};
 
-/// Blocks times directions of a batch: some 0.2 s on a software adapter.
+/// Number of blocks times directions in a batch: some 0.2 s on a software adapter.
 pub(crate) const BATCH_BLOCKS: usize = 1 << 23;
 
-/// Bytes of the rays of a batch, where those of one direction are not more: enough for previews, and soon cleared.
+/// Size up to which the sheets of a batch may always grow, in bytes: enough for previews, and quickly cleared.
 const SMALL_BATCH_BYTES: usize = 4 << 20;
-/// And most of them.
+/// Maximum size of the sheets of a batch, in bytes.
 const BATCH_BYTES: usize = 128 << 20;
 
-/// Reading and writing the sums of a block takes as long as clearing so many bytes of sheets, which are made anew for every
-/// filling (7.7 ns and 0.4 ns a byte on a software adapter).
+/// Cost of reading and writing the sums of a block, as the number of bytes of sheets that could be cleared in that
+/// time.
+///
+/// On a software adapter it is 7.7 ns per block, and 0.4 ns per byte. Sheets are created and cleared for every
+/// filling.
 const BYTES_PER_SUM: f64 = 20.0;
 
-/// Most layers of a 3D texture everywhere.
+/// Maximum depth of a 3D texture on all adapters.
 const MOST_LAYERS: usize = 2048;
 
-/// Columns, rows and layers of sheets of a format for the rays from any of these directions, in a layer for each slice, where
-/// light is followed in so many directions in all.
+/// Returns columns, rows and layers of the sheets for batches of these directions, with one layer for each slice,
+/// where light is followed in `followed` directions in all.
 ///
-/// Of E directions in a batch sheets take E bytes of one, and sums are added to in K / E batches: together they take least
-/// where E² is K times what sums take, over what sheets take.
+/// With E directions in a batch, sheets take E times the bytes of one direction, and sums are updated in K / E
+/// batches of K directions; the total cost is minimal where E² is K times the cost of the sums divided by the cost of
+/// the sheets.
 pub(crate) fn sheet_size<'a>(
     frames: impl Iterator<Item = &'a SweepFrame>,
     format: wgpu::TextureFormat,
@@ -44,31 +48,32 @@ pub(crate) fn sheet_size<'a>(
     [width, height, slices * best.max(SMALL_BATCH_BYTES / bytes).min(most).max(1)]
 }
 
-/// The rays of a direction.
+/// Parallel rays of one direction.
 #[derive(Debug)]
 pub(crate) struct Rays {
     pub frame: SweepFrame,
-    /// Where they have to be followed.
+    /// Tiles of rays that have to be followed, with their ranges of slices.
     pub tiles: SweepTiles,
 }
 
-/// Directions in which light is followed, batch by batch.
+/// Directions in which light is followed, divided into batches.
 #[derive(Debug)]
 pub(crate) struct Batches {
     rays: Vec<Rays>,
-    /// Directions of a batch; of the last, they may be fewer.
+    /// Number of directions in a batch; the last may have fewer.
     each: usize,
 }
 
 impl Batches {
-    /// As few as sheets of so many layers have room for, and as take no longer than they may. Rays are followed through boxes,
-    /// in blocks.
+    /// Divides the directions into as few batches as the layers of the sheets and the time per batch allow. Rays are
+    /// followed through `boxes`, in blocks.
     pub(crate) fn new(frames: Vec<SweepFrame>, layers: usize, boxes: &[[DVec3; 2]]) -> Self {
         let slices = frames.iter().map(SweepFrame::slices).max().unwrap_or(1);
         Self::of_at_most(layers / slices, frames, boxes)
     }
 
-    /// The same of rays that keep what is left of them at their ends alone.
+    /// Divides the directions into batches, for rays that store only the transmittance at their ends and so need one
+    /// layer each.
     pub(crate) fn of_ends(frames: Vec<SweepFrame>, boxes: &[[DVec3; 2]]) -> Self {
         Self::of_at_most(MAX_SKY_RAYS, frames, boxes)
     }
@@ -76,33 +81,33 @@ impl Batches {
     fn of_at_most(most: usize, frames: Vec<SweepFrame>, boxes: &[[DVec3; 2]]) -> Self {
         let blocks: usize = frames.first().map_or(1, |frame| frame.dims.iter().product());
         let most = (BATCH_BLOCKS / blocks.max(1)).min(most).clamp(1, MAX_SKY_RAYS);
-        // As even as can be: a pass over fewer takes as long as one over all.
+        // As even as possible, since a pass over fewer directions takes as long as one over all.
         let each = frames.len().div_ceil(frames.len().div_ceil(most).max(1)).max(1);
         let rays = |frame: SweepFrame| Rays { tiles: SweepTiles::through(&frame, boxes), frame };
         Self { rays: frames.into_par_iter().map(rays).collect(), each }
     }
 
-    /// How many batches there are.
+    /// Returns the number of batches.
     pub(crate) fn count(&self) -> usize {
         self.rays.len().div_ceil(self.each)
     }
 
-    /// How many directions there are.
+    /// Returns the number of directions in all batches.
     pub(crate) fn directions(&self) -> usize {
         self.rays.len()
     }
 
-    /// Directions of a batch; of the last, they may be fewer.
+    /// Returns the number of directions in a batch; the last may have fewer.
     pub(crate) fn each(&self) -> usize {
         self.each
     }
 
-    /// Rays of a batch; none beyond the last.
+    /// Returns the rays of a batch; empty beyond the last.
     pub(crate) fn rays(&self, batch: usize) -> &[Rays] {
         self.rays.chunks(self.each).nth(batch).unwrap_or_default()
     }
 
-    /// Columns and rows of the rays of any direction.
+    /// Returns the largest numbers of columns and rows of rays in any direction.
     pub(crate) fn widest(&self) -> [usize; 2] {
         [0, 1].map(|side| self.rays.iter().map(|rays| rays.frame.size[side] as usize).max().unwrap_or(1))
     }
@@ -159,12 +164,12 @@ mod tests {
         assert_eq!((small.count(), small.each(), layers), (1, 6, 6 * 41));
         let (more, _) = of([26, 24, 41], 14, ONE);
         assert_eq!((more.count(), more.each()), (2, 7));
-        // Of a flat one rays take 23 times the room of its blocks.
+        // In a flat grid, slanted rays take 23 times as many texels as there are blocks.
         let (flat, _) = of([151, 162, 28], 6, ONE);
         assert_eq!(flat.each(), 2);
         let (flat, _) = of([151, 162, 28], 64, ONE);
         assert!((4..=6).contains(&flat.each()), "{}", flat.each());
-        // One direction has room, whatever it takes.
+        // A single direction is allowed to exceed the limit.
         let (large, [width, height, layers]) = of([300; 3], 6, COLORS);
         assert_eq!((large.count(), layers), (6, 300));
         assert!(8 * width * height * layers > BATCH_BYTES);

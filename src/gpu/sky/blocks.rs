@@ -1,4 +1,4 @@
-//! What attenuates light, as mean extinctions of blocks of voxels.
+//! Downsampled extinction: mean over blocks of voxels, for sweeps of light.
 
 use crate::gpu::pipelines::binding::{Named, buffer};
 use crate::gpu::pipelines::uniforms;
@@ -11,46 +11,48 @@ use crate::gpu::{GpuError, RenderOptions};
 use crate::model::{Classification, Settings};
 use crate::plan::{CellSet, stretch_reach};
 
-/// The filling of blocks, by a shader that imports `sky/places.wgsl`.
+/// Pass that fills blocks of extinction, with a shader that imports `sky/places.wgsl`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BlocksPass<'a> {
     pub shader: &'static str,
-    /// Blocks along x, y and z.
+    /// Number of blocks along x, y and z.
     pub dims: [usize; 3],
-    /// Voxels along the edge of a block.
+    /// Number of voxels along the edge of a block.
     pub divisor: usize,
-    /// Multiplies the extinction.
+    /// Factor applied to extinction.
     pub density_scale: f64,
-    /// What of light that is met is scattered.
+    /// Fraction of attenuated light that is scattered rather than absorbed.
     pub albedo: f64,
-    /// Whether what is filled is for light that has one colour all through.
+    /// `true` if all light has the same colour.
     pub one_color: bool,
-    /// Of the texture that is filled.
+    /// Format of the texture that is filled.
     pub format: wgpu::TextureFormat,
-    /// Blocks in which anything may attenuate light ([`met`]).
+    /// Cells of blocks in which something may attenuate light ([`met`]).
     pub cells: &'a ListedCells,
     pub tables: &'a Tables,
     pub settings: &'a Settings,
 }
 
-/// The level of the pyramid whose texels are as large as an eighth of a block of `divisor`³ voxels; of one voxel, that.
+/// Returns the pyramid level with texels as large as an eighth of a block of `divisor`³ voxels; level 0 for single
+/// voxels.
 fn level_of(divisor: usize) -> f64 {
     (divisor as f64 / 2.0).max(1.0).log2()
 }
 
-/// Cells of blocks of `divisor`³ voxels in which anything may attenuate light, of a grid of so many blocks.
+/// Returns the cells of blocks of `divisor`³ voxels in which something may attenuate light; `dims` is the number of
+/// blocks.
 pub(crate) fn met(tables: &Tables, options: &RenderOptions, dims: [usize; 3], divisor: usize) -> CellSet {
     let bricks = brick_dims(dims);
     if !options.empty_space_skipping {
         return CellSet::full(bricks);
     }
-    // Places of a block lie at most as many cells from that of its middle as it has voxels in half its edge.
+    // The sample points of a block are at most as many cells from its centre as half its edge has voxels.
     let reach = stretch_reach(level_of(divisor)).saturating_add((divisor / 2) as u8);
     tables.lighting.around(reach, divisor, bricks)
 }
 
 impl BlocksPass<'_> {
-    /// Records it; what is filled and what more the shader reads is among the `entries`.
+    /// Records the pass; `entries` are the target and the additional bindings of the shader.
     pub(crate) fn record(
         &self,
         gpu: Gpu<'_>,
@@ -72,7 +74,7 @@ impl BlocksPass<'_> {
             dims: dims.map(|n| n as u32),
             voxel_step: divisor as f32,
             level: level_of(divisor) as f32,
-            // Eight places; a voxel is one.
+            // Offset of the eight sample points from the centre; a single voxel is sampled at its centre.
             offset: if divisor == 1 { 0.0 } else { divisor as f32 / 4.0 },
             edge: (scene.smallest_edge() * density_scale) as f32,
             albedo: albedo as f32,
@@ -92,7 +94,7 @@ impl BlocksPass<'_> {
     }
 }
 
-/// What tells one pipeline that fills blocks from another.
+/// Pipeline variant of the pass that fills blocks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct BlocksVariant {
     shader: &'static str,
@@ -112,7 +114,7 @@ impl Variant for BlocksVariant {
         constants.push(flag("ONE_COLOR", self.one_color));
         constants.push(flag("CUT", self.is_cut));
         constants.push(flag("PRECLASSIFY", self.classification == Classification::Pre));
-        // What places are fetched from is the pyramid.
+        // Sample points are fetched from the pyramid: the prefiltered kernel, with stretch.
         constants.extend([("KERNEL", 2.0), ("STRETCH", 1.0)]);
         constants
     }

@@ -1,4 +1,4 @@
-//! The filling of a volume of how open to the sky places are.
+//! Filling of a sky-visibility volume: its temporary textures and its steps.
 
 use glam::DVec3;
 
@@ -17,50 +17,51 @@ use crate::gpu::{Context, GpuError, RenderOptions};
 use crate::model::Settings;
 use crate::plan::{SkyKey, SweepFrame, boxes_around, directions_above, sweep_directions};
 
-/// The filling of a volume of the sky's visibility.
+/// Work to fill a volume of sky visibility.
 #[derive(Debug)]
 pub(crate) struct SkyBuild {
-    /// Rays from every direction.
+    /// Rays from all directions.
     around: Batches,
-    /// Rays from above, for a floor: those from all around would draw petals under what is small.
+    /// Rays from above, for the floor; the few directions all around would draw petal-shaped shadows under small
+    /// objects.
     above: Batches,
-    /// What multiplies the extinction.
+    /// Factor applied to extinction.
     density_scale: f64,
-    /// Blocks in which something attenuates light.
+    /// Blocks in which something may attenuate light.
     met: ListedCells,
     /// Blocks that pictures look up.
     looked_up: ListedCells,
     textures: Textures,
 }
 
-/// What only the filling needs.
+/// Temporary textures and buffers for the filling.
 #[derive(Debug)]
 struct Textures {
-    /// Optical depth of blocks, with one of nothing around the grid.
+    /// Optical depth of blocks, with a border of empty blocks around the grid.
     blocks: wgpu::TextureView,
-    /// What rays deposit.
+    /// Transmittance along rays.
     sheets: RaySheets,
-    /// Moments so far.
+    /// Sums of the moments over the batches so far.
     sums: wgpu::Buffer,
-    /// What only that of the floor's map needs.
+    /// Temporary resources for the floor's map.
     floor: Option<FloorTextures>,
     bytes: u64,
 }
 
-/// What only the filling of a floor's map needs.
+/// Temporary textures and buffers for the floor's map.
 #[derive(Debug)]
 struct FloorTextures {
-    /// What is left of rays where they meet the floor.
+    /// Transmittance of rays where they meet the floor.
     left: RaySheets,
-    /// Moments so far.
+    /// Sums of the moments over the batches so far.
     sums: wgpu::Buffer,
 }
 
 impl SkyBuild {
-    /// Lays out the filling of a volume.
+    /// Plans the filling of a volume, and allocates its temporary textures.
     ///
     /// # Errors
-    /// When memory is out.
+    /// Returns an error if memory is exhausted.
     pub(crate) fn new(
         gpu: Gpu<'_>,
         (tables, options): (&Tables, &RenderOptions),
@@ -86,17 +87,17 @@ impl SkyBuild {
         Ok(Self { around, above, density_scale: key.density_scale(), met, looked_up, textures })
     }
 
-    /// Batches of directions.
+    /// Returns the number of batches of directions.
     pub(crate) fn batches(&self) -> usize {
         self.around.count() + self.above.count()
     }
 
-    /// Bytes that only the filling needs.
+    /// Returns the size of the temporary resources, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         self.textures.bytes + self.met.bytes() + self.looked_up.bytes()
     }
 
-    /// Fills the blocks with what attenuates light.
+    /// Fills the blocks of extinction.
     pub(crate) fn fill_blocks(
         &self,
         gpu: Gpu<'_>,
@@ -121,7 +122,7 @@ impl SkyBuild {
         pass.record(gpu, &[view_of("extinction", &self.textures.blocks)], encoder)
     }
 
-    /// Follows light from the directions of a batch, and adds what arrives to what came before.
+    /// Sweeps the directions of a batch, and adds their transmittance to the moments.
     pub(crate) fn fill_batch(
         &self,
         gpu: Gpu<'_>,
@@ -129,7 +130,7 @@ impl SkyBuild {
         batch: usize,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        // Those from all around come first.
+        // Batches from all directions precede those from above.
         if let Some(batch) = batch.checked_sub(self.around.count()) {
             return self.fill_floor(gpu, volume, batch, encoder);
         }
@@ -160,7 +161,7 @@ impl SkyBuild {
         Ok(())
     }
 
-    /// Follows light from the directions of a batch to the floor, and adds what it sees of it to what came before.
+    /// Sweeps the directions of a batch down to the floor, and adds the result to the moments of its map.
     fn fill_floor(
         &self,
         gpu: Gpu<'_>,
@@ -203,8 +204,8 @@ impl SkyBuild {
 }
 
 impl Textures {
-    /// Room for rays of so many columns, rows and layers, and for sums of so many blocks; for those of a floor, if there is
-    /// one.
+    /// Allocates sheets of `sheet_size` texels, sums for `looked_up` blocks, and if there is a floor the textures for
+    /// its map.
     fn new(
         context: &Context,
         volume: &SkyVolume,
@@ -226,7 +227,7 @@ impl Textures {
             })
         };
         let of_floor = |floor: &FloorMap| {
-            // Before them there is a column and a row of rays that pass the grid by.
+            // Before the rays there are a column and a row of rays that miss the grid.
             let [width, height] = above.widest().map(|n| n + 1);
             let left = RaySheets::new(context, [width, height, above.each()], format)?;
             Ok(FloorTextures { left, sums: sums("Sky::floor_sums", floor.texels()) })

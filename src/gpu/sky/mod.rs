@@ -1,7 +1,8 @@
-//! The light of a sky: how open to it each place is.
+//! Sky visibility: a volume that stores how much of the sky each point sees.
 //!
-//! Blocks of voxels get a mean extinction, light is followed through them from many directions, and what arrives is
-//! gathered into two moments over the directions: their mean V₀ and V₁.
+//! Extinction is averaged over blocks of voxels, light is swept through them from many directions, and the
+//! transmittance is summed into two moments over directions: the mean transmittance V₀, and the mean V₁ of
+//! transmittance times direction.
 
 pub(super) mod batches;
 pub(super) mod blocks;

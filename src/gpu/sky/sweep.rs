@@ -1,4 +1,4 @@
-//! The march of light along the rays of a batch of directions.
+//! Sweep of light along the parallel rays of a batch of directions.
 
 use glam::DVec3;
 
@@ -12,26 +12,27 @@ use crate::gpu::resources::pass;
 use crate::gpu::volume::Gpu;
 use crate::plan::SweepFrame;
 
-/// A batch of directions in which light is followed through blocks, by a shader that imports `sky/rays.wgsl`.
+/// Pass that sweeps light through blocks in a batch of directions, with a shader that imports `sky/rays.wgsl`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SweepPass<'a> {
     pub shader: &'static str,
-    /// Whether light has one colour all through (`bounces/sweep.wgsl`).
+    /// `true` if all light has the same colour (`bounces/sweep.wgsl`).
     pub one_color: bool,
     pub rays: &'a [Rays],
-    /// Blocks along x, y and z.
+    /// Number of blocks along x, y and z.
     pub dims: [usize; 3],
-    /// What is filled: a layer for each slice of each direction, or for each direction.
+    /// Target: a layer for each slice of each direction, or one for each direction.
     pub sheets: &'a RaySheets,
-    /// Whether nothing has been summed before.
+    /// `true` for the first batch, before which the sums are undefined.
     pub is_first: bool,
-    /// One over all directions: what makes their sum a mean.
+    /// One over the number of directions, which turns sums into means.
     pub share: f32,
 }
 
 impl SweepPass<'_> {
-    /// Records it: light that arrives from directions goes through blocks into sheets, both of which are among the `entries`.
-    /// Returns what the passes that gather from these need to know.
+    /// Records the pass; `entries` include the blocks that light passes through and the target sheets. `arriving` is
+    /// the radiance that enters the grid from a direction. Returns the uniform, which the pass that gathers from the
+    /// sheets also binds.
     pub(crate) fn record(
         &self,
         gpu: Gpu<'_>,
@@ -41,7 +42,7 @@ impl SweepPass<'_> {
     ) -> Result<wgpu::Buffer, GpuError> {
         let Self { shader, one_color, rays, dims, sheets, is_first, share } = *self;
         let edge = gpu.volume.scene.smallest_edge();
-        // What is left over has no weight, and no rays.
+        // Unused slots of the uniform have weight 0 and no rays.
         let mut packed = [bytemuck::Zeroable::zeroed(); uniforms::MAX_SKY_RAYS];
         let mut layer = 0;
         let mut tiles: Vec<u32> = Vec::new();
@@ -76,8 +77,8 @@ impl SweepPass<'_> {
     }
 }
 
-/// The rays of a direction for the shaders, from which so much light arrives; `edge` is that of a voxel, and layer and tile are
-/// the first among all.
+/// Packs the rays of a direction for the shaders; `edge` is that of a voxel, and `layer` and `tile` are the first
+/// ones of this direction.
 fn pack(frame: &SweepFrame, edge: f64, (layer, tile): (usize, usize), arriving: DVec3) -> uniforms::SkyRays {
     uniforms::SkyRays {
         towards: frame.towards.as_vec3().into(),
@@ -96,23 +97,23 @@ fn pack(frame: &SweepFrame, edge: f64, (layer, tile): (usize, usize), arriving: 
     }
 }
 
-/// What tells one pipeline that gathers from a sweep from another.
+/// Pipeline variant of a pass that gathers from swept sheets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct GatherVariant {
     pub shader: &'static str,
-    /// Directions of a batch.
+    /// Number of directions in a batch.
     directions: usize,
-    /// Whether none comes after it, of a shader that stores the mean then.
+    /// `true` for the last batch, which stores the mean; `None` for shaders that store no mean.
     is_last: Option<bool>,
 }
 
 impl GatherVariant {
-    /// That of a shader which stores no mean.
+    /// Creates the variant of a shader that stores no mean.
     pub(crate) fn of(shader: &'static str, batches: &Batches) -> Self {
         Self { shader, directions: batches.each(), is_last: None }
     }
 
-    /// That of a shader which stores the mean when a batch is the last.
+    /// Creates the variant of a shader that stores the mean after the last batch.
     pub(crate) fn with_mean(shader: &'static str, batches: &Batches, batch: usize) -> Self {
         Self { is_last: Some(batch + 1 == batches.count()), ..Self::of(shader, batches) }
     }

@@ -1,4 +1,4 @@
-//! The volume of the sky's visibility.
+//! Sky-visibility volume: moments of transmittance over directions for blocks of voxels.
 
 use std::sync::Arc;
 
@@ -14,38 +14,38 @@ use crate::math::SceneSpace;
 use crate::model::Resolution;
 use crate::plan::{CellSet, FloorPlace};
 
-/// Bytes of four sums of a block.
+/// Size of a block's four sums, in bytes.
 pub(crate) const SUM_BYTES: u64 = 16;
 
-/// Most texels that the rays of one direction may take: 128 MiB of sheets.
+/// Maximum number of texels for the rays of one direction: 128 MiB of sheets.
 pub(crate) const MOST_TEXELS: u64 = 1 << 26;
 
-/// How open to the sky each block of voxels is.
+/// Sky visibility of blocks of voxels.
 #[derive(Debug)]
 pub(crate) struct SkyVolume {
-    /// Blocks along x, y and z.
+    /// Number of blocks along x, y and z.
     pub dims: [usize; 3],
-    /// Voxels along the edge of a block.
+    /// Number of voxels along the edge of a block.
     pub divisor: usize,
-    /// V₁ in rgb, V₀ in a.
+    /// View of the moments: V₁ in rgb, V₀ in a.
     pub view: wgpu::TextureView,
-    /// What the floor sees of the sky, where there was one when it was filled.
+    /// Sky-visibility map of the floor, if there was a floor when the volume was filled.
     pub floor: Option<FloorMap>,
-    /// Cells (of blocks) that hold, or will hold, values.
+    /// Cells (of blocks) that hold values, or will when the volume is complete.
     pub filled: Arc<CellSet>,
-    /// Cells around them, which only previews look up: nothing is in the way of the sky there.
+    /// Cells around the filled ones, which only previews look up and which see the whole sky.
     pub margin: CellSet,
-    /// How long it took.
+    /// Stopwatch for the filling of the volume.
     pub fill: FillTime,
-    /// Counts up with every use; the least recently used goes first.
+    /// Counter value at the last use; the least recently used volume is dropped first.
     pub last_used: u64,
 }
 
 impl SkyVolume {
-    /// Makes the texture, of blocks of `divisor`³ voxels; nothing is filled yet.
+    /// Creates the texture, for blocks of `divisor`³ voxels; nothing is filled yet.
     ///
     /// # Errors
-    /// When memory is out.
+    /// Returns an error if memory is exhausted.
     pub(crate) fn new(
         context: &Context,
         scene: &SceneSpace,
@@ -68,7 +68,7 @@ impl SkyVolume {
         Ok(Self { dims, divisor, view, floor, filled, margin, fill: FillTime::default(), last_used: 0 })
     }
 
-    /// Opens the margin to all of the sky.
+    /// Sets the cells of the margin to an unoccluded sky.
     pub(crate) fn clear_margin(
         &self,
         gpu: Gpu<'_>,
@@ -86,20 +86,20 @@ impl SkyVolume {
         Ok(())
     }
 
-    /// Index space to texture coordinates: (p + ½) × lookup.
+    /// Returns the scale from index space to texture coordinates: (p + ½) × lookup.
     pub(crate) fn lookup(&self) -> [f32; 3] {
         self.dims.map(|n| 1.0 / (n * self.divisor) as f32)
     }
 
-    /// Bytes of its texture.
+    /// Returns the size of the textures, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         self.floor.as_ref().map_or(0, FloorMap::bytes)
             + 8 * self.dims.iter().map(|&n| n as u64).product::<u64>()
     }
 }
 
-/// Voxels along the edge of a block at a resolution, on an adapter, where the rays of one direction may take so many texels: see
-/// [`divisor_for`].
+/// Returns the number of voxels along the edge of a block for an adapter, at a resolution, with at most `most_texels`
+/// for the rays of one direction; see [`divisor_for`].
 pub(crate) fn divisor_on(
     context: &Context,
     grid: [usize; 3],
@@ -110,13 +110,15 @@ pub(crate) fn divisor_on(
     divisor_for(grid, resolution, (most_texels, most_sums))
 }
 
-/// Voxels along the edge of a block: those of a resolution, or more where the rays of one direction would take more texels
-/// than they may, or there would be more blocks than the adapter's buffers hold sums for.
+/// Returns the number of voxels along the edge of a block.
+///
+/// It is that of the resolution, doubled until the rays of one direction are within `most_texels`, and the blocks
+/// within the number of sums that a buffer of the adapter holds.
 fn divisor_for(grid: [usize; 3], resolution: Resolution, (most_texels, most_sums): (u64, u64)) -> usize {
     let mut divisor = resolution.divisor();
     let texels = |divisor: usize| {
         let [x, y, z] = grid.map(|n| n.div_ceil(divisor) as u64);
-        // Rays drift by a block per slice at most.
+        // Rays drift by at most one block per slice.
         [[x, y, z], [y, z, x], [z, x, y]].map(|[a, b, c]| a * (a + b) * (a + c)).into_iter().max()
     };
     let blocks = |divisor: usize| grid.map(|n| n.div_ceil(divisor) as u64).iter().product::<u64>();
@@ -138,9 +140,9 @@ mod tests {
         assert_eq!(of(512, Resolution::Half), 2);
         assert_eq!(of(1024, Resolution::Half), 4);
         assert_eq!(of(2048, Resolution::Quarter), 8);
-        // Of a row of voxels 256 blocks fit: their rays drift as far as they go.
+        // In a single row of voxels the rays drift as far as they advance, so only 256 blocks are possible.
         assert_eq!(divisor_for([4096, 1, 1], Resolution::Full, (MOST_TEXELS, u64::MAX)), 16);
-        // The least that adapters bind is 128 MiB.
+        // The smallest limit on bindings of all adapters is 128 MiB.
         let least = (128 << 20) / SUM_BYTES;
         assert_eq!(divisor_for([256; 3], Resolution::Full, (MOST_TEXELS, least)), 2);
         assert_eq!(divisor_for([203; 3], Resolution::Full, (MOST_TEXELS, least)), 1);

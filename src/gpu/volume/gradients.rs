@@ -1,4 +1,4 @@
-//! Gradients of the pyramid in a texture of their own, while memory allows.
+//! Precomputed gradients of the pyramid in a texture, where memory allows.
 
 use std::ops::Range;
 
@@ -10,11 +10,11 @@ use crate::gpu::resources::pass;
 use crate::gpu::volume::listed_bricks;
 use crate::gpu::{Context, GpuError, ShaderLibrary};
 
-/// Most bytes that gradients may take: 512³ voxels need 1.29 GB, with coarser levels. Beyond that, a
-/// volume's gradients are twelve fetches of the pyramid each.
+/// Maximum size of the gradient texture, in bytes: 512³ voxels need 1.29 GB with the coarser levels. Larger volumes
+/// take each gradient from twelve fetches of the pyramid.
 const MAX_BYTES: u64 = 3 << 29;
 
-/// Makes the texture beside a pyramid; `None` where it would take too much memory.
+/// Creates the gradient texture for a pyramid; `None` if it would be too large or memory is exhausted.
 pub(crate) fn texture(context: &Context, pyramid: &wgpu::Texture) -> Option<wgpu::Texture> {
     let size = pyramid.size();
     let texels = u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers);
@@ -31,16 +31,16 @@ pub(crate) fn texture(context: &Context, pyramid: &wgpu::Texture) -> Option<wgpu
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
         view_formats: &[],
     });
-    // Pictures do without.
+    // Not an error: without the texture, shaders compute gradients from the pyramid.
     texture.inspect_err(|err| log::info!("no texture of gradients: {err}")).ok()
 }
 
-/// Bytes for so many texels of the finest level: 8 each, and a seventh for the coarser levels.
+/// Returns the size in bytes for `texels` texels of the finest level: 8 each, and a seventh for the coarser levels.
 pub(crate) fn bytes(texels: u64) -> u64 {
     texels * 64 / 7
 }
 
-/// Fills some bricks of one level from the pyramid, which must be complete.
+/// Fills the gradients of some bricks of one level. The pyramid must be complete.
 pub(crate) fn fill(
     context: &Context,
     shaders: &ShaderLibrary,

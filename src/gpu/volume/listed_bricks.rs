@@ -1,42 +1,42 @@
-//! Dispatches over listed bricks, as `shaders/common/listed_bricks.wgsl` takes them apart.
+//! Dispatches over lists of bricks, decoded by `shaders/common/listed_bricks.wgsl`.
 
 use crate::gpu::volume::Gpu;
 
-/// Bricks or tiles per row of a dispatch over a list: at most two workgroups each, within the 65535 that all adapters
-/// allow.
+/// Number of bricks or tiles per row of a dispatch over a list: with at most two workgroups each, a row is within the
+/// 65535 workgroups that all adapters allow.
 #[cfg_attr(not(feature = "testing"), expect(unreachable_pub, reason = "the tests of shaders reach it"))]
 pub const LISTED_PER_ROW: u32 = 16384;
 
-/// A brick's coordinates, ten bits each.
+/// Packs the coordinates of a brick or cell into one word, ten bits each.
 pub(crate) fn packed([x, y, z]: [usize; 3]) -> u32 {
     x as u32 | (y as u32) << 10 | (z as u32) << 20
 }
 
-/// An entry of a list: a brick's coordinates, and those of its cells that are meant.
+/// List entry: packed coordinates of a brick, and a 64-bit mask of its cells.
 pub(crate) type Listed = [u32; 4];
 
-/// The entry of a brick and its cells.
+/// Builds the list entry of a brick and its cell mask.
 pub(crate) fn listed((brick, cells): ([usize; 3], u64)) -> Listed {
     [packed(brick), cells as u32, (cells >> 32) as u32, 0]
 }
 
-/// The list as a storage buffer, which may be longer.
+/// Uploads a list into a pooled storage buffer, which may be longer than the list.
 pub(crate) fn upload(gpu: Gpu<'_>, bricks: &[Listed]) -> wgpu::Buffer {
     gpu.list("listed_bricks", bricks)
 }
 
-/// Binds a list at its true length, for shaders that ask for it.
+/// Binds a list at its exact length, for shaders that use `arrayLength`.
 pub(crate) fn exactly<'a>(buffer: &'a wgpu::Buffer, bricks: &[Listed]) -> wgpu::BindingResource<'a> {
     let size = wgpu::BufferSize::new(size_of_val(bricks) as u64);
     wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: 0, size })
 }
 
-/// Two workgroups for each of so many bricks.
+/// Returns the dispatch size for two workgroups per brick.
 pub(crate) fn workgroups(listed: u32) -> [u32; 3] {
     [2 * listed.min(LISTED_PER_ROW), listed.div_ceil(LISTED_PER_ROW), 1]
 }
 
-/// A workgroup for each of so many bricks.
+/// Returns the dispatch size for one workgroup per brick.
 pub(crate) fn single_workgroups(listed: u32) -> [u32; 3] {
     [listed.min(LISTED_PER_ROW), listed.div_ceil(LISTED_PER_ROW), 1]
 }
@@ -52,7 +52,7 @@ mod tests {
                 let [x, y, z] = groups;
                 assert!(x <= 65535 && y <= 65535 && z == 1, "{listed}: {groups:?}");
                 assert!(x * y >= listed * per_brick, "{listed}: {groups:?}");
-                // Rows are whole, as the shaders count on, or there is only one.
+                // Rows are full, as the shaders assume, or there is only one.
                 assert!(y == 1 || x == LISTED_PER_ROW * per_brick, "{listed}: {groups:?}");
             }
         }

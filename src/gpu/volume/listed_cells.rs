@@ -1,17 +1,17 @@
-//! Dispatches over the cells of a set, as `shaders/common/listed_cells.wgsl` takes them apart.
+//! Dispatches over lists of cells, decoded by `shaders/common/listed_cells.wgsl`.
 
 use super::listed_bricks::{packed, single_workgroups};
 use crate::gpu::Context;
 use crate::gpu::pipelines::binding::{Named, buffer};
 use crate::plan::CellSet;
 
-/// Voxels of a cell.
+/// Number of voxels in a cell.
 const VOXELS: u64 = 8;
 
-/// Cells of a workgroup.
+/// Number of cells per workgroup.
 const PER_WORKGROUP: usize = 8;
 
-/// Cells of voxels or blocks, brick by brick.
+/// List of cells of voxels or blocks, in the order of their bricks, in a storage buffer.
 #[derive(Debug)]
 pub(crate) struct ListedCells {
     buffer: wgpu::Buffer,
@@ -19,7 +19,7 @@ pub(crate) struct ListedCells {
 }
 
 impl ListedCells {
-    /// Those of a set.
+    /// Uploads the cells of a set.
     pub(crate) fn new(context: &Context, set: &CellSet) -> Self {
         let cells: Vec<u32> = set.cells().map(packed).collect();
         Self {
@@ -28,22 +28,22 @@ impl ListedCells {
         }
     }
 
-    /// Voxels of all of them.
+    /// Returns the number of voxels in all listed cells.
     pub(crate) fn voxels(&self) -> u64 {
         self.count as u64 * VOXELS
     }
 
-    /// As what shaders know them by.
+    /// Binds the list under the name that shaders use.
     pub(crate) fn entry(&self) -> Named<'_> {
         buffer("cells", &self.buffer)
     }
 
-    /// Workgroups over all of them.
+    /// Returns the dispatch size for all listed cells.
     pub(crate) fn workgroups(&self) -> [u32; 3] {
         single_workgroups(self.count.div_ceil(PER_WORKGROUP) as u32)
     }
 
-    /// Bytes of the list.
+    /// Returns the size of the list, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         self.buffer.size()
     }

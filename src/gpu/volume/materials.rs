@@ -1,6 +1,8 @@
-//! What the voxels mean, where they are classified before kernels spread them: a pyramid like that of densities, with four
-//! channels. The first is the extinction as a share of the largest, which takes the place of the density: normals are of
-//! it, light is attenuated by it, and a table says how much extinction it is. The others are colours times that.
+//! Pre-classified volume: voxels with the transfer function applied before reconstruction.
+//!
+//! A pyramid like that of densities, with four channels. The first is extinction relative to the maximum, which takes
+//! the place of density: normals are its gradients, light is attenuated by it, and a table converts it to extinction.
+//! The others are the colours multiplied by it.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -20,27 +22,27 @@ use crate::gpu::{Context, GpuError};
 use crate::model::BakedTransfer;
 use crate::plan::MAX_STRETCH_LEVEL;
 
-/// Classified voxels.
+/// Pre-classified voxels of one transfer function.
 #[derive(Debug)]
 pub(crate) struct Materials {
-    /// The transfer function.
+    /// Transfer function that the voxels are classified with.
     baked: Arc<BakedTransfer>,
     texture: wgpu::Texture,
     pub views: LevelViews,
-    /// How much extinction a share of the largest is, in place of the transfer function.
+    /// Table that converts relative to absolute extinction, bound in place of the transfer function.
     pub table: wgpu::Buffer,
-    /// Bricks of its levels that may hold anything.
+    /// Packed coordinates of the bricks that may be non-empty, for each level.
     bricks: Vec<Vec<u32>>,
-    /// All bricks are among them.
+    /// `true` if the lists contain all bricks.
     holds_all: bool,
     is_complete: AtomicBool,
 }
 
 impl Materials {
-    /// Room for the voxels of a volume, or the room that others leave; nothing is classified yet.
+    /// Creates the texture for a volume, or reuses that of `left`; nothing is classified yet.
     ///
     /// # Errors
-    /// When the adapter cannot hold them.
+    /// Returns an error if the adapter cannot hold the texture.
     pub(crate) fn new(
         context: &Context,
         volume: &GpuVolume,
@@ -53,7 +55,7 @@ impl Materials {
             Some(left) => (left.texture, left.holds_all),
             None => (Self::texture(context, volume.volume.dims())?, false),
         };
-        // The lowest density is what bricks hold that are not listed.
+        // Bricks that are not listed have the lowest density, so all are listed if that is visible.
         let holds_all = held_all || baked.shows_lowest();
         let bricks = if holds_all { all_bricks(&texture) } else { volume.filled_levels.clone() };
         Ok(Self {
@@ -69,7 +71,7 @@ impl Materials {
 
     fn texture(context: &Context, dims: [usize; 3]) -> Result<wgpu::Texture, GpuError> {
         let bytes = bytes(padded(dims).iter().map(|&n| n as u64).product());
-        // A software driver takes memory when it is written to, and the system then ends the program.
+        // Software drivers commit memory when it is first written, and the system then kills the process.
         if context.is_software() && bytes > memory_budget_bytes() {
             return Err(GpuError::OutOfMemory {
                 what: "classified voxels".to_owned(),
@@ -87,27 +89,27 @@ impl Materials {
         })
     }
 
-    /// Whether it is what a transfer function makes of voxels.
+    /// Returns true if the voxels are classified with the entries of this transfer function.
     pub(crate) fn is_of(&self, baked: &BakedTransfer) -> bool {
         self.baked.entries == baked.entries
     }
 
-    /// Everything of it is there from now on.
+    /// Marks the pyramid as complete.
     pub(crate) fn finish(&self) {
         self.is_complete.store(true, Ordering::Relaxed);
     }
 
-    /// Whether everything of it is there.
+    /// Returns true if the pyramid is complete.
     pub(crate) fn is_complete(&self) -> bool {
         self.is_complete.load(Ordering::Relaxed)
     }
 
-    /// Levels and their bricks, cut into short steps; finest first.
+    /// Returns each level with its bricks, split into short steps; finest first.
     pub(crate) fn steps(&self) -> impl Iterator<Item = (u32, Range<usize>)> + '_ {
         prefilter::steps_of(&self.bricks)
     }
 
-    /// Fills some bricks of one level. The finer level must be complete. `table` is the transfer function's.
+    /// Fills some bricks of one level. The finer level must be complete. `table` holds the transfer function.
     pub(crate) fn fill(
         &self,
         gpu: Gpu<'_>,
@@ -148,7 +150,7 @@ impl Materials {
         Ok(())
     }
 
-    /// Bytes of its texture.
+    /// Returns the size of the texture, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         let size = self.texture.size();
         let texels = u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers);
@@ -156,12 +158,13 @@ impl Materials {
     }
 }
 
-/// Bytes of four 16-bit channels for so many texels of the finest level; the coarser levels add a seventh.
+/// Returns the size in bytes of four 16-bit channels for `texels` texels of the finest level; the coarser levels add
+/// a seventh.
 fn bytes(texels: u64) -> u64 {
     texels * 64 / 7
 }
 
-/// What tells one pipeline that classifies voxels from another.
+/// Pipeline variant of the pass that classifies voxels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct MaterialsVariant {
     has_missing: bool,
@@ -177,7 +180,7 @@ impl Variant for MaterialsVariant {
     }
 }
 
-/// All bricks of each level of a texture.
+/// Returns the packed coordinates of all bricks of each level of a texture.
 fn all_bricks(texture: &wgpu::Texture) -> Vec<Vec<u32>> {
     let size = texture.size();
     let size = [size.width, size.height, size.depth_or_array_layers];

@@ -1,4 +1,4 @@
-//! The volume on the GPU: density with its border once more around it, and the pyramid made from it.
+//! Volume on the GPU: density texture with a replicated border, and the pyramid made from it.
 
 pub(super) mod gradients;
 pub(super) mod listed_bricks;
@@ -31,22 +31,22 @@ use crate::gpu::pipelines::uniforms::Grid;
 use crate::gpu::pipelines::variant::Ends;
 use crate::math::SceneSpace;
 
-/// Upload block: small enough that one takes a few milliseconds.
+/// Size of an upload step in bytes, small enough for a few milliseconds.
 const UPLOAD_BYTES: usize = 2 << 20;
 
-/// What every pass over a volume works with.
+/// Inputs shared by all passes over a volume: device, pipelines, volume and pool.
 #[derive(Clone, Copy)]
 pub(crate) struct Gpu<'a> {
     pub context: &'a Context,
     pub shaders: &'a super::ShaderLibrary,
     pub volume: &'a GpuVolume,
-    /// Bound where a shader declares a light volume and a light has none.
+    /// 1 × 1 × 1 texture that is bound where a shader declares a texture which the pass does not need.
     pub placeholder: &'a wgpu::TextureView,
     pub pool: &'a ResourcePool,
 }
 
 impl<'a> Gpu<'a> {
-    /// Tools together with a volume.
+    /// Combines the tools of a device with a volume.
     pub(crate) fn new(tools: &'a Tools, volume: &'a GpuVolume) -> Self {
         let Tools { context, shaders, pool, placeholder } = tools;
         Self { context, shaders, volume, placeholder, pool }
@@ -54,17 +54,18 @@ impl<'a> Gpu<'a> {
 }
 
 impl Gpu<'_> {
-    /// A uniform for what is being recorded.
+    /// Returns a pooled uniform buffer for the submission being recorded.
     pub(crate) fn uniform<T: bytemuck::NoUninit>(&self, label: &'static str, value: T) -> wgpu::Buffer {
         self.pool.buffer(self.context, label, &[value], wgpu::BufferUsages::UNIFORM)
     }
 
-    /// A list for what is being recorded; the buffer may be longer.
+    /// Returns a pooled storage buffer for the submission being recorded; it may be longer than `values`.
     pub(crate) fn list<T: bytemuck::NoUninit>(&self, label: &'static str, values: &[T]) -> wgpu::Buffer {
         self.pool.buffer(self.context, label, values, wgpu::BufferUsages::STORAGE)
     }
 
-    /// A list in a buffer of so many bytes at least: lists of any length up to that use one.
+    /// Returns a pooled storage buffer of at least `room` bytes, so that lists of any length up to that share one
+    /// buffer.
     pub(crate) fn list_with_room<T: bytemuck::NoUninit>(
         &self,
         label: &'static str,
@@ -74,7 +75,7 @@ impl Gpu<'_> {
         self.pool.buffer_with_room(self.context, label, values, wgpu::BufferUsages::STORAGE, room)
     }
 
-    /// Binds resources to a group of a pipeline.
+    /// Creates a bind group, cached in the pool.
     pub(crate) fn bind(
         &self,
         label: &str,
@@ -85,7 +86,7 @@ impl Gpu<'_> {
         self.pool.bind(self.context, label, pipeline, group, entries)
     }
 
-    /// Bind group 1 of passes that look at a pyramid alone.
+    /// Creates bind group 1 of passes that read a pyramid but not the density texture.
     pub(crate) fn bind_pyramid(&self, pipeline: &Pipeline, pyramid: &LevelViews) -> wgpu::BindGroup {
         let volume = self.volume;
         let grid = self.uniform("Volume::grid", volume.grid(0));
@@ -102,7 +103,7 @@ impl Gpu<'_> {
         )
     }
 
-    /// Bind group 1 of passes that look at a pyramid alone, and at what of it is there in that.
+    /// Creates bind group 1 of passes that read a pyramid without presence.
     pub(crate) fn bind_pyramid_alone(&self, pipeline: &Pipeline, pyramid: &LevelViews) -> wgpu::BindGroup {
         let volume = self.volume;
         let grid = self.uniform("Volume::grid", volume.grid(0));
@@ -114,7 +115,7 @@ impl Gpu<'_> {
         self.bind("Volume::pyramid_alone_bind_group", pipeline, 1, &entries)
     }
 
-    /// Bind group 1 of the passes that sample density.
+    /// Creates bind group 1 of passes that sample density.
     pub(crate) fn bind_volume(
         &self,
         pipeline: &Pipeline,
@@ -136,36 +137,36 @@ impl Gpu<'_> {
         self.bind("Volume::bind_group", pipeline, 1, &entries)
     }
 
-    /// The texture of what is there where voxels are missing, or what is bound in its place.
+    /// Returns the view of the presence texture if voxels are missing, else the placeholder.
     pub(crate) fn presence(&self, levels: Levels) -> &wgpu::TextureView {
         self.volume.presence.as_ref().map_or(self.placeholder, |presence| levels.choose(&presence.views))
     }
 }
 
-/// The pyramids that a pass reads: of densities, or of what voxels mean ([`materials`]).
+/// Pyramids that a pass reads: of densities, or of pre-classified voxels ([`materials`]).
 #[derive(Clone, Copy)]
 pub(crate) struct Pyramids<'a> {
     pub own: &'a LevelViews,
-    /// Of what attenuates light, for passes that look at both.
+    /// Pyramid of what attenuates light, for eye passes that cast near-field rays.
     pub lighting: Option<&'a LevelViews>,
 }
 
-/// The levels of the pyramid that a pass may read.
+/// Range of pyramid levels that a pass may read.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Levels {
-    /// No kernel is stretched.
+    /// Level 0 alone, for kernels that are not stretched.
     Finest,
-    /// Kernels are stretched.
+    /// All levels, for stretched kernels.
     All,
 }
 
 impl Levels {
-    /// What kernels need that are stretched or not.
+    /// Returns the levels that stretched or unstretched kernels need.
     pub(crate) fn of(is_stretched: bool) -> Self {
         if is_stretched { Self::All } else { Self::Finest }
     }
 
-    /// The view that has these levels.
+    /// Selects the view with these levels.
     pub(crate) fn choose(self, views: &LevelViews) -> &wgpu::TextureView {
         match self {
             Self::Finest => &views.finest,
@@ -174,13 +175,13 @@ impl Levels {
     }
 }
 
-/// A texture of the pyramid as a whole, and its finest level alone: a software driver works out the sizes of
-/// levels for each lane and fetch where there are several.
+/// Views of a pyramid texture: all levels, and the finest alone. For views with several levels a software driver
+/// computes the level sizes for each lane and fetch, which the second view avoids.
 #[derive(Debug)]
 pub(crate) struct LevelViews {
-    /// Every level.
+    /// View of all levels of the pyramid.
     pub all: wgpu::TextureView,
-    /// Level 0.
+    /// View of level 0 of the pyramid.
     finest: wgpu::TextureView,
 }
 
@@ -192,26 +193,26 @@ impl LevelViews {
     }
 }
 
-/// A volume's textures and bricks.
+/// Textures, samplers and brick data of a volume.
 #[derive(Debug)]
 pub(crate) struct GpuVolume {
-    /// What is on the GPU; kept for re-upload and for the CPU side of the passes.
+    /// Volume that is uploaded; kept for later uploads and for the passes' work on the CPU.
     pub volume: Arc<Volume>,
-    /// Density ranges of 8³ bricks.
+    /// Density ranges of bricks of 8³ voxels.
     pub bricks: Arc<Bricks>,
-    /// How the grid lies in scene space.
+    /// Transform between index space and scene space.
     pub scene: SceneSpace,
     density: wgpu::Texture,
     pub density_view: wgpu::TextureView,
     pub pyramid: wgpu::Texture,
     pub pyramid_views: LevelViews,
-    /// What is there, where voxels are missing.
+    /// Presence texture, if voxels are missing.
     pub presence: Option<Presence>,
-    /// The bricks of its levels that hold anything.
+    /// Packed coordinates of the bricks that are non-empty, for each level of the pyramid.
     pub filled_levels: Vec<Vec<u32>>,
-    /// Gradients of the pyramid, while memory allows.
+    /// Gradients of the pyramid; `None` if they take too much memory.
     pub gradients: Option<wgpu::Texture>,
-    /// Views of the gradients.
+    /// Views of the gradient texture.
     pub gradients_views: Option<LevelViews>,
     pub clamped: wgpu::Sampler,
     nearest: wgpu::Sampler,
@@ -220,10 +221,10 @@ pub(crate) struct GpuVolume {
 }
 
 impl GpuVolume {
-    /// Makes the textures; nothing is uploaded yet, but for what is known of which voxels are there.
+    /// Creates the textures. Nothing is uploaded yet, except a `presence` texture that is passed in.
     ///
     /// # Errors
-    /// When the adapter cannot hold them.
+    /// Returns an error if the adapter cannot hold the textures.
     pub(crate) fn new(
         context: &Context,
         volume: &Arc<Volume>,
@@ -271,14 +272,14 @@ impl GpuVolume {
         })
     }
 
-    /// How many slices one upload step takes.
+    /// Returns the number of z-slices per upload step.
     pub(crate) fn slices_per_step(&self) -> usize {
         let [nx, ny, _] = self.volume.dims();
         (UPLOAD_BYTES / (nx * ny * 2)).max(1)
     }
 
-    /// Uploads some z-slices, each with a voxel more on either side of its rows and columns; the first and the last slice
-    /// also once more before and behind them.
+    /// Uploads some z-slices, each with a replicated border of one voxel; the first and last slices are also
+    /// replicated in front and behind.
     pub(crate) fn upload(&self, context: &Context, slices: std::ops::Range<usize>) {
         use rayon::prelude::*;
         let [nx, ny, nz] = self.volume.dims();
@@ -286,7 +287,7 @@ impl GpuVolume {
             |density: f32| if self.unorm { unorm16(density) } else { f16::from_f32(density).to_bits() };
         let first = if slices.start == 0 { 0 } else { slices.start + 1 };
         let end = if slices.end == nz { nz + 2 } else { slices.end + 1 };
-        // What a texel of padding repeats.
+        // Voxel that a texel of the border replicates.
         let voxel = |texel: usize, n: usize| texel.saturating_sub(1).min(n - 1);
         let words: Vec<u16> = (first..end)
             .into_par_iter()
@@ -321,23 +322,23 @@ impl GpuVolume {
         );
     }
 
-    /// Where what is shown ends with the data, if nothing is known of what is shown.
+    /// Returns the grid boundaries that can be visible with any transfer function.
     pub(crate) fn ends_of_all(&self) -> Ends {
         if self.presence.is_some() { Ends::AtMissing } else { Ends::BetweenFaces }
     }
 
-    /// The uniform that describes the grid to a pass whose samples see `dilation` cells around theirs.
+    /// Returns the uniform of the grid, for a pass whose samples reach `dilation` cells beyond their own.
     pub(crate) fn grid(&self, dilation: i32) -> Grid {
         Grid { dilation, ..self.grid }
     }
 
-    /// Bytes of its textures.
+    /// Returns the size of the textures, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         let texels = |texture: &wgpu::Texture| {
             let size = texture.size();
             u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers)
         };
-        // Two channels, where voxels are missing; the coarser levels of the pyramid add a seventh.
+        // Two channels where voxels are missing; the coarser levels of the pyramid add a seventh.
         let channels = if self.presence.is_some() { 2 } else { 1 };
         let gradients = self.gradients.as_ref().map_or(0, |texture| gradients::bytes(texels(texture)));
         let presence = self.presence.as_ref().map_or(0, Presence::bytes);
@@ -345,7 +346,7 @@ impl GpuVolume {
     }
 }
 
-/// Bricks along each axis of a grid.
+/// Returns the number of bricks along each axis of a grid.
 pub(crate) fn brick_dims(dims: [usize; 3]) -> [usize; 3] {
     dims.map(|n| n.div_ceil(BRICK_EDGE))
 }

@@ -1,5 +1,6 @@
-//! Fills the pyramid: `volume/prefilter.wgsl` makes level 0 from the density, `volume/downsample.wgsl` the others; where
-//! voxels are missing `volume/prefilter_present.wgsl` and `volume/downsample_present.wgsl` do.
+//! Pyramid of prefiltered density: level 0 by `volume/prefilter.wgsl`, coarser levels by `volume/downsample.wgsl`.
+//!
+//! Volumes with missing voxels use `volume/prefilter_present.wgsl` and `volume/downsample_present.wgsl`.
 
 use std::ops::Range;
 
@@ -13,18 +14,20 @@ use crate::gpu::volume::listed_bricks;
 use crate::gpu::{Context, GpuError, ShaderLibrary};
 use crate::plan::BrickSet;
 
-/// Bricks per step: 2^18 texels of eight fetches each, some 40 ms on a software adapter.
+/// Number of bricks per step: 2^18 texels with eight fetches each, some 40 ms on a software adapter.
 const STEP_BRICKS: usize = 512;
 
-/// The bricks of 8³ texels, packed, in which each level of the pyramid, or its gradients, are not nothing. Where voxels are
-/// missing each is something: what is there is, however low.
+/// Returns the packed coordinates of the bricks of 8³ texels in which each level of the pyramid, or its gradients,
+/// are non-zero.
+///
+/// With missing voxels all bricks count, because presence is non-zero at any density.
 pub(crate) fn filled_levels(bricks: &Bricks, pyramid: &wgpu::Texture, has_missing: bool) -> Vec<Vec<u32>> {
     let size = pyramid.size();
     let size = [size.width, size.height, size.depth_or_array_layers].map(|n| n as usize);
     let dims = |level: u32| size.map(|n| (n >> level).max(1).div_ceil(8));
     let [nx, ny, nz] = bricks.dims;
     let is_empty = |x: usize, y: usize, z: usize| {
-        // A brick's range looks three voxels beyond it: the blur sees one, a difference two more. Beyond the grid its
+        // A brick's range covers three voxels beyond it: one for the blur, two for differences. Beyond the grid its
         // border is repeated.
         let [x, y, z] = [x.min(nx - 1), y.min(ny - 1), z.min(nz - 1)];
         !has_missing && bricks.ranges[x + nx * (y + ny * z)] == [0.0, 0.0]
@@ -32,7 +35,7 @@ pub(crate) fn filled_levels(bricks: &Bricks, pyramid: &wgpu::Texture, has_missin
     let finest = dims(0);
     let holds = |at: usize| {
         let [x, y, z] = [at % finest[0], at / finest[0] % finest[1], at / (finest[0] * finest[1])];
-        // Four texels of padding: half a brick.
+        // Four texels of padding are half a brick, so a brick of texels overlaps two of voxels.
         let sides = |c: usize| c.saturating_sub(1)..=c;
         sides(z).any(|z| sides(y).any(|y| sides(x).any(|x| !is_empty(x, y, z))))
     };
@@ -40,7 +43,7 @@ pub(crate) fn filled_levels(bricks: &Bricks, pyramid: &wgpu::Texture, has_missin
     let mut levels = Vec::new();
     for level in 0..pyramid.mip_level_count() {
         if level > 0 {
-            // Texel i is made of 2i − 1 … 2i + 2, and differences see two texels further.
+            // Texel i is made of texels 2i − 1 … 2i + 2, and differences reach two texels further.
             set = set.dilated(1).coarsened(2, dims(level));
         }
         levels.push(set.positions().map(listed_bricks::packed).collect());
@@ -48,21 +51,21 @@ pub(crate) fn filled_levels(bricks: &Bricks, pyramid: &wgpu::Texture, has_missin
     levels
 }
 
-/// A level and its bricks, cut into short steps; finest first.
+/// Returns each level with its bricks, split into short steps; finest first.
 pub(crate) fn steps(volume: &GpuVolume) -> impl Iterator<Item = (u32, Range<usize>)> + '_ {
     steps_of(&volume.filled_levels)
 }
 
-/// The same of lists of bricks, one for each level.
+/// Splits lists of bricks, one list for each level, into short steps; finest first.
 pub(crate) fn steps_of(levels: &[Vec<u32>]) -> impl Iterator<Item = (u32, Range<usize>)> + '_ {
     (0..).zip(levels).flat_map(|(level, bricks)| {
-        // One step at least, so that the texture begins as nothing everywhere.
+        // At least one step per level, so that the texture is cleared.
         let firsts = (0..bricks.len().max(1)).step_by(STEP_BRICKS);
         firsts.map(move |first| (level, first..bricks.len().min(first + STEP_BRICKS)))
     })
 }
 
-/// The view of one level of a texture.
+/// Creates a view of one level of a texture.
 pub(crate) fn level_of(texture: &wgpu::Texture, level: u32) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor {
         label: Some("Pyramid::level"),
@@ -72,7 +75,7 @@ pub(crate) fn level_of(texture: &wgpu::Texture, level: u32) -> wgpu::TextureView
     })
 }
 
-/// What the shaders know of a level, and the list of its bricks; at least one entry.
+/// Creates the uniform of a level and the list of its bricks, which has at least one entry.
 pub(crate) fn uniform_and_list(
     context: &Context,
     level: u32,
@@ -107,7 +110,7 @@ pub(crate) fn fill(
         0 => volume.density_view.clone(),
         _ => level_of(&volume.pyramid, level - 1),
     };
-    // Coarser levels have it from the finer.
+    // Coarser levels take presence from the finer one.
     let presence =
         volume.presence.as_ref().filter(|_| level == 0).map(|presence| level_of(&presence.texture, 0));
     let pipeline = shaders.pipeline(&Only(shader))?;

@@ -1,5 +1,8 @@
-//! Where voxels are missing: the share of kernels that lies on those that are there, and how it changes, in a texture
-//! beside the pyramid and like it, level by level. Made here and uploaded, since few volumes have any.
+//! Presence texture of volumes with missing voxels: presence (the fraction of the kernel on existing voxels) and its
+//! differences.
+//!
+//! A mip pyramid parallel to that of density. Computed on the CPU and uploaded, since few volumes have missing
+//! voxels.
 
 use std::ops::Range;
 
@@ -11,20 +14,20 @@ use crate::data::{Missing, Volume};
 use crate::gpu::{Context, GpuError};
 use crate::plan::MAX_STRETCH_LEVEL;
 
-/// The coarsest level.
+/// Index of the coarsest level.
 const MAX_LEVEL: u32 = MAX_STRETCH_LEVEL as u32;
 
-/// Bytes of a texel: the share, and its changes along x, y and z.
+/// Size of a texel in bytes: presence, and its differences along x, y and z.
 const TEXEL_BYTES: usize = 4;
 
-/// Steps from 0 to 1 of signed bytes. Software drivers interpolate these in floating point, and unsigned ones in eight
-/// bits, which turns normals.
+/// Number of steps from 0 to 1 of signed bytes. Software drivers interpolate signed bytes in floating point, but
+/// unsigned ones in eight bits, which tilts normals.
 const STEPS: f32 = 127.0;
 
-/// Texels of level 0 per upload step: some 20 ms, and 16 MiB while it is made.
+/// Number of texels of level 0 per upload step: some 20 ms, and 16 MiB of temporary memory.
 const STEP_TEXELS: usize = 1 << 20;
 
-/// The texture, for a volume in which voxels are missing.
+/// Presence texture of a volume with missing voxels.
 #[derive(Debug)]
 pub(crate) struct Presence {
     pub texture: wgpu::Texture,
@@ -32,10 +35,10 @@ pub(crate) struct Presence {
 }
 
 impl Presence {
-    /// Makes it for a volume, if it had these dimensions; `None` where no voxel is missing.
+    /// Creates the texture for a volume as if it had these dimensions; `None` if no voxel is missing.
     ///
     /// # Errors
-    /// When the adapter cannot hold it.
+    /// Returns an error if the adapter cannot hold it.
     pub(crate) fn new(
         context: &Context,
         volume: &Volume,
@@ -57,7 +60,7 @@ impl Presence {
         Ok(Some(Self { texture, views }))
     }
 
-    /// The slices of its coarsest level, cut into short steps.
+    /// Returns the slices of the coarsest level, split into short upload steps.
     pub(crate) fn steps(&self) -> impl Iterator<Item = Range<usize>> + use<> {
         let size = self.texture.size();
         let slices = (size.depth_or_array_layers >> MAX_LEVEL) as usize;
@@ -66,7 +69,7 @@ impl Presence {
         (0..slices).step_by(each).map(move |first| first..slices.min(first + each))
     }
 
-    /// Uploads some slices of the coarsest level, and of all levels what lies there.
+    /// Computes and uploads some slices of the coarsest level, with the corresponding slices of all finer levels.
     pub(crate) fn upload(&self, context: &Context, volume: &Volume, slices: Range<usize>) {
         let Some(missing) = volume.missing() else { return };
         for (mip_level, slab) in (0..).zip(levels_of(missing, volume.dims(), slices.clone())) {
@@ -90,7 +93,7 @@ impl Presence {
         }
     }
 
-    /// Bytes of its texture.
+    /// Returns the size of the texture, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         let size = self.texture.size();
         let texels = u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers);
@@ -99,23 +102,24 @@ impl Presence {
     }
 }
 
-/// Shares at the texels of some slices of a level.
+/// Presence at the texels of some slices of one level.
 struct Slab {
-    /// Texels along x and y, and slices.
+    /// Number of texels along x and y, and number of slices.
     dims: [usize; 3],
-    /// The first slice, among those of the whole level …
+    /// Index of the first slice within the level.
     first: usize,
-    /// … of which there are so many.
+    /// Number of slices of the whole level.
     depth: usize,
     shares: Vec<f32>,
 }
 
-/// Of every level, the finest first, at least the slices that lie in those of the coarsest, and one to either side.
+/// Computes all levels, finest first: at least the slices within the given ones of the coarsest level, and one to
+/// either side.
 fn levels_of(missing: &Missing, dims: [usize; 3], coarsest: Range<usize>) -> Vec<Slab> {
     let depth = padded(dims)[2];
-    // Changes are seen from the neighbours of a slice.
+    // Differences read the neighbouring slices.
     let widened = coarsest.start.saturating_sub(1)..(coarsest.end + 1).min(depth >> MAX_LEVEL);
-    // Of each level those that the next is made from: texel i of 2i − 1 … 2i + 2.
+    // Slices of each level that the next is computed from: texel i from 2i − 1 … 2i + 2.
     let mut slices = vec![widened];
     for level in (0..MAX_LEVEL).rev() {
         let Range { start, end } = slices[slices.len() - 1].clone();
@@ -132,12 +136,12 @@ fn levels_of(missing: &Missing, dims: [usize; 3], coarsest: Range<usize>) -> Vec
     slabs
 }
 
-/// Slices of level 0: 1 where a voxel is there, else 0, blurred as densities are (`shaders/volume/prefilter.wgsl`). Around
-/// the grid is nothing.
+/// Computes slices of level 0: 1 for voxels that exist, else 0, blurred like densities
+/// (`shaders/volume/prefilter.wgsl`). Outside the grid is 0.
 fn prefiltered(missing: &Missing, dims: [usize; 3], slices: Range<usize>) -> Slab {
     let [nx, ny, depth] = padded(dims);
     let voxel = |texel: usize, n: usize| texel.checked_sub(PYRAMID_PADDING).filter(|&voxel| voxel < n);
-    // A blurred slice is made from its neighbours, too.
+    // The blur along z reads the neighbouring slices, too.
     let first = slices.start.saturating_sub(1);
     let count = (slices.end + 1).min(depth) - first;
     let share = |at: usize| {
@@ -158,7 +162,7 @@ fn prefiltered(missing: &Missing, dims: [usize; 3], slices: Range<usize>) -> Sla
 }
 
 impl Slab {
-    /// Slices of the next level (`shaders/volume/downsample.wgsl`).
+    /// Computes slices of the next coarser level (`shaders/volume/downsample.wgsl`).
     fn halved(&self, slices: Range<usize>) -> Self {
         let halve = |slab: &Self, axis: usize, kept: Range<usize>| {
             slab.resampled(axis, kept, 2, |at| {
@@ -171,8 +175,8 @@ impl Slab {
         halve(&halve(&halve(self, 2, slices), 0, 0..nx / 2), 1, 0..ny / 2)
     }
 
-    /// Sums of four texels along an axis, of which there are `step` for one of the result, which has places `kept`: `taps`
-    /// are their places, which may lie beyond the outermost of the level and mean it then, with their weights.
+    /// Filters along an axis with four taps, at one result for `step` texels. `taps` gives the texels and weights for
+    /// each position in `kept`; texels beyond the ends of the level are clamped.
     fn resampled(
         &self,
         axis: usize,
@@ -201,15 +205,15 @@ impl Slab {
         Self { dims, first, depth, shares }
     }
 
-    /// Some of its slices as texels.
+    /// Encodes some slices as texels.
     fn texels(&self, slices: &Range<usize>) -> Vec<i8> {
         let slice = self.dims[0] * self.dims[1];
         let kept = (slices.start - self.first) * slice..(slices.end - self.first) * slice;
         kept.into_par_iter().flat_map_iter(|at| self.texel(at)).collect()
     }
 
-    /// The share at a place of its list, and the differences of its neighbours; beyond the outermost texel is the
-    /// outermost, as a sampler has it.
+    /// Encodes the texel at an index: presence, and differences of its neighbours, clamped at the border like a
+    /// sampler does.
     fn texel(&self, at: usize) -> [i8; TEXEL_BYTES] {
         let change = |axis: usize| {
             let stride: usize = self.dims[..axis].iter().product();
@@ -218,7 +222,7 @@ impl Slab {
             let behind = if place + 1 < self.dims[axis] { at + stride } else { at };
             (STEPS * (self.shares[behind] - self.shares[before])).round() as i8
         };
-        // Over all of its range, which is twice as many steps.
+        // Presence uses the whole signed range, −1 … 1, which doubles its resolution.
         let share = 2.0 * self.shares[at] - 1.0;
         [(STEPS * share).round() as i8, change(0), change(1), change(2)]
     }
@@ -247,7 +251,7 @@ mod tests {
         assert_eq!(slabs[0].dims, [24, 24, 16]);
         for (level, slab) in (0..).zip(&slabs) {
             let sum = slab.shares.iter().sum::<f32>() * 8f32.powi(level);
-            // Coarse texels at the outermost edge count what spreads beyond twice.
+            // Clamping at the border counts what spreads beyond it twice.
             assert!((sum / there - 1.0).abs() < 0.02, "level {level}: {sum} of {there}");
         }
     }
@@ -263,7 +267,7 @@ mod tests {
         let row = nx * (PYRAMID_PADDING + 2 + ny * (PYRAMID_PADDING + 2));
         let along_x: Vec<[i8; TEXEL_BYTES]> =
             (0..16).map(|x| slabs[0].texel(row + PYRAMID_PADDING + x)).collect();
-        // The prefilter of a step: 1/12, 11/12, 1.
+        // Prefiltered step function: 1/12, 11/12, 1.
         assert_eq!([6, 7, 8, 9].map(|x: usize| along_x[x][0]), [-127, -106, 106, 127]);
         assert_eq!([5, 6, 7, 8, 9, 10].map(|x: usize| along_x[x][1]), [0, 11, 116, 116, 11, 0]);
         assert!(along_x.iter().all(|texel| texel[2..] == [0; 2]), "{along_x:?}");

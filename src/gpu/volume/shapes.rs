@@ -1,14 +1,15 @@
-//! Shapes of the textures of a volume.
+//! Dimensions and descriptors of volume textures.
 
-/// Voxels before the data in the pyramid, which repeat its border: one texel of its coarsest level.
+/// Padding of the pyramid, in voxels on each side, which replicates the border: one texel of the coarsest level.
 pub(super) const PYRAMID_PADDING: usize = 4;
 
-/// Texels of the pyramid: whole ones on every level, so that a level's texel is exactly 2³ of the finer one's.
+/// Returns the dimensions of the pyramid, padded to multiples of 8 so that each texel covers exactly 2³ of the finer
+/// level.
 pub(super) fn padded(dims: [usize; 3]) -> [usize; 3] {
     dims.map(|n| (n + 2 * PYRAMID_PADDING).next_multiple_of(8))
 }
 
-/// A 3D texture without mip levels.
+/// Returns the descriptor of a 3D texture with a single mip level.
 pub(crate) fn texture_3d(
     label: &'static str,
     dims: [usize; 3],

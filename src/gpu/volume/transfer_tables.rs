@@ -1,4 +1,4 @@
-//! Transfer functions on the GPU, and the bricks that they show.
+//! Transfer-function tables on the GPU, and the cells that are visible with them.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -12,35 +12,36 @@ use crate::gpu::{Context, GpuError};
 use crate::model::{BakedTransfer, COLORS, Settings};
 use crate::plan::{BrickSet, CellDistances, CellSet, CellsAhead, TablesKey};
 
-/// Voxels between opposite faces from which on no kernel that is not stretched reaches both: `EDGE_REACH` in
-/// `shaders/density/presence.wgsl`, twice.
+/// Distance in voxels between opposite faces from which on no unstretched kernel reaches both: twice `EDGE_REACH` in
+/// `shaders/density/presence.wgsl`.
 const KERNEL_AT_FACES: f64 = 3.0;
 
-/// A baked transfer function: its table and where it shows anything.
+/// Baked transfer function: its lookup table and the cells where it has extinction (occupied cells).
 #[derive(Debug, Clone)]
 pub(crate) struct Table {
-    /// What it was baked to.
+    /// Lookup table on the CPU.
     baked: Arc<BakedTransfer>,
-    /// The table as a storage buffer.
+    /// Lookup table in a storage buffer.
     pub buffer: wgpu::Buffer,
     /// Bricks with any extinction.
     pub occupied: Arc<BrickSet>,
-    /// Distances to cells with any.
+    /// Distance of each cell to the nearest occupied cell.
     distances: Arc<CellDistances>,
-    /// How many cells are at least between those and the cells at the faces of the grid.
+    /// Minimum distance, in cells, from occupied cells to the cells at the faces of the grid.
     clearance: u8,
-    /// The least distance to them of cells in which voxels are missing.
+    /// Minimum distance, in cells, from occupied cells to cells with missing voxels; 255 if none are missing.
     from_missing: u8,
-    /// There is none.
+    /// `true` if no cell is occupied.
     pub is_empty: bool,
-    /// What it makes of voxels, where these are classified before kernels spread them …
+    /// Pre-classified voxels, if voxels are classified before reconstruction.
     pub materials: Option<Arc<Materials>>,
-    /// … and the channel of that in which shares of the largest extinction are.
+    /// Channel of the materials that holds relative extinction.
     pub component: u32,
 }
 
 impl Table {
-    /// Finds where a transfer function shows anything, unless one of the `known` shows the same.
+    /// Uploads a transfer function and finds its occupied cells, reusing those of a `known` table with the same
+    /// visible densities.
     fn new<'a>(
         context: &Context,
         volume: &GpuVolume,
@@ -81,7 +82,7 @@ impl Table {
         }
     }
 
-    /// What each of the colours of light meets of it, where it holds the shares of that.
+    /// Returns the tables for red, green and blue light, which share the occupied cells of this one.
     fn met_by_colors(&self, context: &Context) -> Vec<Self> {
         let met = |color| {
             let baked = self.baked.met_by(color);
@@ -91,19 +92,19 @@ impl Table {
         (0..COLORS).map(met).collect()
     }
 
-    /// Where what it shows ends with the data, for samples that see `dilation` cells around theirs, with kernels stretched
-    /// up to a level of the pyramid.
+    /// Returns the grid boundaries near occupied cells, for samples that reach `dilation` cells beyond their own,
+    /// with kernels stretched up to a level of the pyramid.
     pub(crate) fn ends(&self, volume: &GpuVolume, dilation: i32, level: f64) -> Ends {
         if self.materials.is_some() {
-            // What voxels mean ends with them by itself.
+            // Pre-classified voxels outside the grid have no extinction, so no boundary test is needed.
             return Ends::Nowhere;
         }
-        // Kernels reach two voxels of their level to either side, and their slopes a voxel more.
+        // Kernels reach two voxels of their level to either side, and their gradients one voxel more.
         let near_missing = dilation + (1.5 * level.exp2()).ceil() as i32 + 1;
         if i32::from(self.from_missing) <= near_missing {
             return volume.ends_of_all();
         }
-        // A face lies half a voxel before the first cell.
+        // Faces lie half a voxel outside the first cell.
         let layers = level.exp2().ceil() as i32;
         if i32::from(self.clearance) > layers - 1 + dilation {
             return Ends::Nowhere;
@@ -112,82 +113,83 @@ impl Table {
         if thinnest < KERNEL_AT_FACES * level.exp2() { Ends::BetweenFaces } else { Ends::AtFaces }
     }
 
-    /// Whether it shows anything of a cell.
+    /// Returns true if a cell is occupied.
     pub(crate) fn occupies(&self, [x, y, z]: [usize; 3]) -> bool {
         let [width, height, _] = self.distances.dims;
         self.distances.values[x + width * (y + height * z)] == 0
     }
 
-    /// Cells of `divisor`³ voxels, on a grid of `bricks`, that lie up to so many data cells from any that it shows.
+    /// Returns the cells of `divisor`³ voxels, on a grid of `bricks`, within `reach` data cells of occupied cells.
     pub(crate) fn around(&self, reach: u8, divisor: usize, bricks: [usize; 3]) -> CellSet {
         self.distances.within(reach, divisor, bricks)
     }
 
-    /// What it was baked to.
+    /// Returns the lookup table on the CPU.
     pub(crate) fn baked(&self) -> &Arc<BakedTransfer> {
         &self.baked
     }
 
-    /// What the density that is gathered means: the transfer function, or the extinction of shares of the largest.
+    /// Returns the table for gathered values: the transfer function, or for pre-classified voxels the conversion of
+    /// relative extinction.
     pub(crate) fn gathered(&self) -> &wgpu::Buffer {
         self.materials.as_ref().map_or(&self.buffer, |materials| &materials.table)
     }
 
-    /// The pyramid of what is gathered.
+    /// Returns the pyramid that values are gathered from.
     pub(crate) fn pyramid<'a>(&'a self, volume: &'a GpuVolume) -> &'a LevelViews {
         self.materials.as_ref().map_or(&volume.pyramid_views, |materials| &materials.views)
     }
 
-    /// Whether the lowest density has any extinction.
+    /// Returns true if the lowest density has extinction.
     pub(crate) fn shows_empty_space(&self) -> bool {
         self.baked.shows_lowest()
     }
 
-    /// The largest extinction of any density, per scene unit.
+    /// Returns the maximum extinction of any density, per scene unit.
     pub(crate) fn largest_extinction(&self) -> f32 {
         self.baked.most_extinction()
     }
 }
 
-/// Both transfer functions of the settings.
+/// Tables of both transfer functions of the settings.
 #[derive(Debug)]
 pub(crate) struct Tables {
-    /// What the eye sees.
+    /// Table of the eye's transfer function.
     pub eye: Table,
-    /// What the light meets.
+    /// Table of the lighting transfer function.
     pub lighting: Table,
-    /// What each of its colours does, where shadows are coloured; else none.
+    /// Tables for red, green and blue light if shadows are coloured; else empty.
     colors: Vec<Table>,
-    /// Distances in cells to the nearest that the eye sees.
+    /// Distances in cells to the nearest cell that is visible to the eye.
     pub eye_distances: wgpu::TextureView,
-    /// Distances in cells: r to the nearest that either shows, g to the nearest that attenuates light.
+    /// Distances in cells: r to the nearest cell occupied in either table, g to the nearest that attenuates light.
     pub light_distances: wgpu::TextureView,
-    /// Distances to what either shows: an eye sample looks up its light not far from there.
+    /// Distances to cells occupied in either table; the light of eye samples is looked up near them.
     shown: Arc<CellDistances>,
-    /// Cells of light volumes around there that pictures have needed, the last ones.
+    /// Cells of light volumes that recent pictures have needed, most recent first.
     needed: RefCell<VecDeque<(Needs, Arc<CellSet>)>>,
 }
 
-/// What cells a picture needs of a light volume.
+/// Parameters of the cell set that a picture needs of a light volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Needs {
-    /// Up to so many data cells around what either transfer function shows, …
+    /// Maximum distance, in data cells, from cells occupied in either table.
     pub reach: u8,
-    /// … of a volume with voxels of so many data voxels, …
+    /// Number of data voxels per light voxel, along an axis.
     pub divisor: usize,
-    /// … so much further on.
+    /// Offset of near-field lookups towards the light.
     pub ahead: CellsAhead,
 }
 
-/// How many sets of needed cells are kept: for eight lights, of two looks, at two resolutions.
+/// Maximum number of cached sets of needed cells: for eight lights, two settings and two resolutions.
 const MOST_NEEDED: usize = 32;
 
 impl Tables {
-    /// Bakes what other tables of the volume, made from another key, do not hold already. Returns the tables and
-    /// how many of them were baked.
+    /// Bakes the tables that differ from `previous`, which belong to the same volume and another key. Returns the
+    /// tables and the number of tables baked.
     ///
     /// # Errors
-    /// When memory is out.
+    /// Returns an error if memory is exhausted.
     pub(crate) fn new(
         context: &Context,
         volume: &GpuVolume,
@@ -254,12 +256,12 @@ impl Tables {
         Ok((Self { eye, lighting, colors, eye_distances, light_distances, shown, needed }, baked))
     }
 
-    /// What light meets, or one of its colours.
+    /// Returns the table that attenuates light, or one of its colours.
     pub(crate) fn met(&self, color: Option<usize>) -> &Table {
         color.and_then(|color| self.colors.get(color)).unwrap_or(&self.lighting)
     }
 
-    /// Has the tables know what they make of voxels, if these are classified.
+    /// Sets the pre-classified voxels of the tables, if voxels are classified first.
     pub(crate) fn set_materials(&mut self, eye: Option<Arc<Materials>>, lighting: Option<Arc<Materials>>) {
         for (table, component) in self.colors.iter_mut().zip(1..) {
             table.component = if lighting.is_some() { component } else { 0 };
@@ -268,22 +270,22 @@ impl Tables {
         (self.eye.materials, self.lighting.materials) = (eye, lighting);
     }
 
-    /// The pyramids of passes of the eye.
+    /// Returns the pyramids for passes of the eye.
     pub(crate) fn pyramids<'a>(&'a self, volume: &'a GpuVolume) -> Pyramids<'a> {
         Pyramids { own: self.eye.pyramid(volume), lighting: Some(self.lighting.pyramid(volume)) }
     }
 
-    /// The pyramids of passes that look at light alone.
+    /// Returns the pyramids for passes that follow light.
     pub(crate) fn lighting_pyramids<'a>(&'a self, volume: &'a GpuVolume) -> Pyramids<'a> {
         Pyramids { own: self.lighting.pyramid(volume), lighting: None }
     }
 
-    /// Where what either shows ends with the data, for samples of the eye and rays from them.
+    /// Returns the grid boundaries near cells occupied in either table, for samples of the eye and rays from them.
     pub(crate) fn ends(&self, volume: &GpuVolume, dilation: i32, level: f64) -> Ends {
         self.eye.ends(volume, dilation, level).max(self.lighting.ends(volume, dilation, level))
     }
 
-    /// The cells of a light volume that a picture needs.
+    /// Returns the cells of a light volume that a picture needs, cached.
     pub(crate) fn needed_cells(&self, volume: &GpuVolume, needs: Needs) -> Arc<CellSet> {
         let known =
             self.needed.borrow().iter().find(|(known, _)| *known == needs).map(|(_, set)| Arc::clone(set));
@@ -308,17 +310,18 @@ impl Tables {
         fresh
     }
 
-    /// Whether either shows the lowest density, which is also that of what lies around the grid.
+    /// Returns true if either transfer function has extinction at the lowest density, which is also the density
+    /// outside the grid.
     pub(crate) fn shows_empty_space(&self) -> bool {
         self.eye.shows_empty_space() || self.lighting.shows_empty_space()
     }
 }
 
-/// A reach that no distance exceeds: nothing is leapt over.
+/// Reach larger than any distance, which disables empty-space skipping.
 pub(crate) const EVERYWHERE: i32 = 255;
 
-/// A 3D texture of distances, a byte or two for each cell or brick. Shaders sample normalised formats and
-/// load integers.
+/// Uploads a 3D texture of distances, one or two bytes per cell or brick. Shaders sample normalised formats and load
+/// integer formats.
 pub(crate) fn upload_distances(
     context: &Context,
     label: &'static str,

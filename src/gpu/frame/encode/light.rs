@@ -1,4 +1,4 @@
-//! What the steps of a light pass record.
+//! Recording of the light pass: march, back-projection, ray casting, averaging and merging of colours.
 
 use crate::gpu::GpuError;
 use crate::gpu::frame::job::Job;
@@ -13,7 +13,7 @@ use crate::gpu::volume::Gpu;
 use crate::gpu::volume::transfer_tables::EVERYWHERE;
 
 impl Job<'_> {
-    /// Sets up the march through one view of a light.
+    /// Prepares the march through one view of a light.
     fn begin_view(
         &mut self,
         build: &LightBuild,
@@ -28,7 +28,7 @@ impl Job<'_> {
         let reach = if skips { i32::from(build.reach) } else { EVERYWHERE };
         let mut sheets = Sheets::new(self.tools, geometry, *chunk, reach)?;
         sheets.min_transmittance = self.options.min_transmittance;
-        // A volume as pictures have it serves them, too.
+        // A volume at full resolution also serves pictures, so it is filled with the full reach.
         sheets.preview = self.options.preview && build.is_coarse;
         let mut bytes = self.targets.bytes() + loaded.bytes() + self.tools.pool.bytes();
         bytes += sheets.ring.bytes() + build.bytes();
@@ -63,28 +63,28 @@ impl Job<'_> {
         Ok(CurrentView { sheets, schedule, scatter })
     }
 
-    /// Notes that the filling of a light volume begins.
+    /// Records the start of filling a light volume in the report and the counters.
     fn begin_light(&mut self, build: &LightBuild) {
         self.report.runs.light_volumes += 1;
         self.fills[build.index] += 1;
         self.loaded.value.lights[build.slot].value.begin();
     }
 
-    /// Records a step of one half of a light pass.
+    /// Records a step of the march or of the back-projection (`half`).
     pub(super) fn encode_light(
         &mut self,
         step: &LightStep,
         half: fn(&mut Self, &mut LightBuild, &LightStep, &mut wgpu::CommandEncoder) -> Result<(), GpuError>,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        // Taken out meanwhile: a half changes its build and the job.
+        // Moved out of the job while `half` borrows both the build and the job.
         let mut builds = std::mem::take(&mut self.builds);
         let result = half(self, &mut builds[step.build], step, encoder);
         self.builds = builds;
         result
     }
 
-    /// The view that is being marched, set up when its first step comes.
+    /// Takes the view that is being marched, prepared at its first step.
     fn take_view(
         &mut self,
         build: &mut LightBuild,
@@ -126,7 +126,7 @@ impl Job<'_> {
         }
     }
 
-    /// Brings a chunk of a view's sheets back into the grid.
+    /// Back-projects a chunk of a view's sheets into the grid.
     pub(super) fn backproject_view(
         &mut self,
         build: &mut LightBuild,
@@ -144,7 +144,7 @@ impl Job<'_> {
         let light = build.filled(*point, color, whole);
         let CurrentView { sheets, schedule, scatter } = &current;
         match scatter {
-            // The first sheet that touches a voxel needs no sums.
+            // With first touch a voxel takes one deposit, so neither sums nor weights are needed.
             Some(scatter) if !shadows.first_touch => {
                 scatter.splat_back(gpu, sheets, slabs, encoder)?;
                 if ends_view {
@@ -173,7 +173,7 @@ impl Job<'_> {
         Ok(())
     }
 
-    /// Records the rays from some bricks.
+    /// Records the rays to a light from some bricks.
     pub(super) fn encode_raycast(
         &mut self,
         RaycastStep { build: at, color, point, bricks }: &RaycastStep,
@@ -198,7 +198,7 @@ impl Job<'_> {
         Ok(())
     }
 
-    /// Records that the volumes of the last points of a light join those before.
+    /// Records the averaging of the latest batch of an area light's points.
     pub(super) fn encode_average(
         &self,
         at: usize,
@@ -214,7 +214,7 @@ impl Job<'_> {
         average.add(gpu, build.of_color(color, whole), point, &build.bricks, encoder)
     }
 
-    /// Records that the volumes of a light's colours become one.
+    /// Records the merging of the volumes of red, green and blue light.
     pub(super) fn encode_colors(
         &self,
         at: usize,

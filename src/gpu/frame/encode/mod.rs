@@ -1,4 +1,4 @@
-//! What each step of a job records: the frame's passes, in the order in which they run.
+//! Recording of a job's steps into command buffers, in the order in which they run.
 
 mod light;
 
@@ -20,7 +20,7 @@ use crate::gpu::volume::listed_bricks::listed;
 use crate::gpu::volume::{Gpu, gradients, prefilter};
 
 impl Job<'_> {
-    /// Records one step.
+    /// Records one step into the encoder.
     pub(super) fn encode(&mut self, step: &Step, encoder: &mut wgpu::CommandEncoder) -> Result<(), GpuError> {
         let context = &self.tools.context;
         let volume = &self.loaded.value.volume;
@@ -89,7 +89,7 @@ impl Job<'_> {
         }
     }
 
-    /// Notes what is complete now.
+    /// Processes the `Finish` steps at the front of the queue: marks their products as complete.
     pub(super) fn finish_products(&mut self) {
         while let Some(Step::Finish(product)) = self.steps.front() {
             let target = self.targets.get_mut(self.role);
@@ -149,7 +149,7 @@ impl Job<'_> {
         }
     }
 
-    /// Keys of the volumes of its lights.
+    /// Returns the keys of the light volumes of the picture.
     fn builds_keys(&self) -> Vec<Option<crate::plan::LightKey>> {
         let lights = &self.loaded.value.lights;
         self.slots.iter().map(|slot| slot.map(|slot| lights[slot].key().clone())).collect()
@@ -170,7 +170,7 @@ impl Job<'_> {
         target.value.fill(gpu, &loaded.tables.value, shading, &lights, &list[bricks.clone()], encoder)
     }
 
-    /// Views of the light volumes that the picture looks up, in the order of its lights.
+    /// Returns views of the light volumes that the picture looks up, in the order of its lights.
     fn looked_up(&self) -> Vec<&wgpu::TextureView> {
         let loaded = &self.loaded.value;
         if self.keys.combined.is_some() {
@@ -223,18 +223,18 @@ impl Job<'_> {
         Ok(())
     }
 
-    /// The volume that the picture looks up.
+    /// Returns the volume of sky visibility that the picture looks up.
     pub(super) fn sky_volume(&self) -> Option<&SkyVolume> {
         Some(&self.loaded.value.skies.get(self.sky.slot?)?.value)
     }
 
-    /// Light from all around that the picture looks up.
+    /// Returns the volumes of sky visibility and scattered light that the picture looks up.
     fn around(&self) -> Around<'_> {
         let bounces = self.bounces.slot.and_then(|slot| self.loaded.value.bounces.get(slot));
         Around { sky: self.sky_volume(), bounces: bounces.map(|known| &known.value) }
     }
 
-    /// Records a step of the filling of a volume of bounced light.
+    /// Records a step of filling a volume of scattered light.
     fn encode_bounce(
         &mut self,
         step: BounceStep,
@@ -254,7 +254,8 @@ impl Job<'_> {
         build.record(gpu, look, volume, step, encoder)
     }
 
-    /// Records a step of the filling of a sky's volume: blocks first, or a batch of directions.
+    /// Records a step of filling a volume of sky visibility: the blocks of extinction (`None`), or a batch of
+    /// directions.
     pub(super) fn encode_sky(
         &mut self,
         batch: Option<usize>,

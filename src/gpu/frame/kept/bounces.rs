@@ -1,4 +1,4 @@
-//! Which volume of bounced light a picture needs, and which are kept.
+//! Cache of scattered-light volumes: look-up, recycling and eviction for a picture.
 
 use std::sync::Arc;
 
@@ -14,22 +14,22 @@ use crate::gpu::sky::volume::divisor_on;
 use crate::gpu::volume::Gpu;
 use crate::plan::BouncesKey;
 
-/// Volumes that are kept: that of the picture, that of its previews, and one that undoing a change finds again.
+/// Maximum number of cached volumes: one for the picture, one for its previews, and one for undoing a change.
 const MOST_KEPT: usize = 3;
 
-/// The bounced light of a picture: where its volume is, and what must be done before.
+/// Scattered-light volume of a picture, and the work to fill it.
 #[derive(Debug, Default)]
 pub(in crate::gpu::frame) struct PlacedBounces {
-    /// What the volume is made from; `None` without one.
+    /// Key of the volume; `None` without one.
     pub key: Option<BouncesKey>,
-    /// Its place among those that are kept.
+    /// Index of the volume among the cached ones.
     pub slot: Option<usize>,
-    /// Its filling, if it must be filled first.
+    /// Work to fill the volume; `None` if it is already complete.
     pub build: Option<BouncesBuild>,
 }
 
 impl PlacedBounces {
-    /// The steps that fill it.
+    /// Returns the steps that fill the volume.
     pub(in crate::gpu::frame) fn steps(&self) -> Vec<Step> {
         let Some(build) = &self.build else { return Vec::new() };
         let mut steps: Vec<_> = build.steps().into_iter().map(Step::Bounce).collect();
@@ -39,10 +39,10 @@ impl PlacedBounces {
 }
 
 impl Loaded {
-    /// Finds or makes room for the volume that a picture or preview needs.
+    /// Finds a cached volume that a picture or preview can use, or creates one.
     ///
     /// # Errors
-    /// When memory is out.
+    /// Returns an error if memory is exhausted.
     pub(in crate::gpu::frame) fn place_bounces(
         &mut self,
         tools: &Tools,
@@ -74,9 +74,9 @@ impl Loaded {
         }
         let key = coarse.unwrap_or_else(|| full.clone());
         let divisor = divisor_on(context, self.volume.volume.dims(), key.resolution(), MOST_TEXELS);
-        // Previews look up what lies further on, too: next to nothing is seen there, and it has no light.
+        // Unfilled cells hold no light. Previews that look up cells further out find next to nothing visible there.
         let mut filled = cells(divisor, reach);
-        // Two looks that are compared may show other things: one volume serves both.
+        // Compared settings may show different cells, so one volume covers both.
         for known in self.bounces.iter().filter(|known| known.holds(&key)) {
             filled = Arc::new(filled.with(&known.value.filled));
         }
@@ -97,7 +97,7 @@ impl Loaded {
         Ok(PlacedBounces { key: Some(key), slot: Some(slot), build: Some(build) })
     }
 
-    /// Bytes of all volumes of bounced light.
+    /// Returns the size of all volumes of scattered light, in bytes.
     pub(crate) fn bounces_bytes(&self) -> u64 {
         self.bounces.iter().map(|known| known.value.bytes()).sum()
     }

@@ -1,4 +1,4 @@
-//! Which light volumes a picture needs, which of them are there, and which are forgotten.
+//! Cache of light volumes: look-up, recycling and eviction for a picture.
 
 use std::sync::Arc;
 
@@ -14,24 +14,24 @@ use crate::gpu::{GpuError, RenderOptions};
 use crate::model::{NearField, SceneLight, Settings, ShadowAlgorithm};
 use crate::plan::{CellSet, CellsAhead, FARTHEST, FloorPlace, FrameKeys, LightKey, lookup_reach};
 
-/// Light volumes that are kept beyond those of the current picture, if it does not have more itself:
-/// undoing a drag finds them, and two looks that are compared do not push out each other's.
+/// Minimum number of cached light volumes beyond those of the current picture: undoing a drag finds them again, and
+/// compared settings do not evict each other's.
 const SPARE_LIGHT_VOLUMES: usize = 2;
 
-/// The light of a picture: where it is, and what must be done before.
+/// Light volumes of a picture, and the work to fill them.
 #[derive(Debug, Default)]
 pub(in crate::gpu::frame) struct PlacedLights {
-    /// Key of every light's volume; `None` for lights without.
+    /// Key of each light's volume; `None` for lights without one.
     pub keys: Vec<Option<LightKey>>,
-    /// Place of every light's volume among those that are kept.
+    /// Index of each light's volume among the cached ones.
     pub slots: Vec<Option<usize>>,
     /// Volumes to be filled.
     pub builds: Vec<LightBuild>,
-    /// Bricks of the combined volume, if it must be filled first.
+    /// Number of bricks of the combined volume, if it has to be filled.
     pub bricks_to_combine: Option<usize>,
 }
 
-/// Where, from its samples, a picture looks up a light whose volume has voxels of `divisor` data voxels.
+/// Returns the offset of light look-ups from their samples, for a volume with `divisor` data voxels per voxel.
 fn lookups_ahead(volume: &GpuVolume, settings: &Settings, light: &SceneLight, divisor: usize) -> CellsAhead {
     let near = settings.near_field();
     if near == NearField::Off {
@@ -42,11 +42,11 @@ fn lookups_ahead(volume: &GpuVolume, settings: &Settings, light: &SceneLight, di
     CellsAhead::towards(light, &volume.scene, way)
 }
 
-/// Where the floor lies that has a map of what gets there of a light of so many points. It takes what has passed all of the
-/// volume, so that nothing may lie below.
+/// Returns the extent of the floor if this light gets a shadow map. The map takes the transmittance behind the whole
+/// volume, so nothing visible may lie below the floor.
 fn floor_of(volume: &GpuVolume, tables: &Tables, settings: &Settings, points: u32) -> Option<FloorPlace> {
     let place = FloorPlace::of(settings)?;
-    // Rays find the colours of shadows.
+    // With a single point, other algorithms or coloured shadows, the floor pass casts rays.
     if points < 2 || settings.shadows.algorithm != ShadowAlgorithm::Splat || settings.has_colored_shadows() {
         return None;
     }
@@ -55,7 +55,7 @@ fn floor_of(volume: &GpuVolume, tables: &Tables, settings: &Settings, points: u3
     (!has_below).then_some(place)
 }
 
-/// How far, in data cells around what the transfer functions show, a light volume is read.
+/// Returns the distance from visible cells, in data cells, up to which a light volume is read.
 fn read_around(options: &RenderOptions, divisor: usize, reach: u8, aheads: &[CellsAhead]) -> u8 {
     if options.fill_everything {
         return FARTHEST;
@@ -70,17 +70,17 @@ fn is_within(needed: &Arc<CellSet>, filled: &Arc<CellSet>) -> bool {
 }
 
 impl Loaded {
-    /// Volumes that a picture began and another one interrupted: their textures serve again.
+    /// Removes the volumes left incomplete by an interrupted picture, so that their textures can be reused.
     pub(crate) fn take_unfinished(&mut self) -> Vec<LightVolume> {
         self.combined = self.combined.take().filter(Cached::is_complete);
         self.lights.extract_if(.., |light| !light.is_complete()).map(|light| light.value).collect()
     }
 
-    /// Finds or makes the light of a picture: volumes for each light, or one for all. Volumes whose textures are
-    /// free are taken from `recyclable`, and left there.
+    /// Finds or creates the light volumes of a picture: one for each light, or a combined one. Reusable volumes are
+    /// taken from `recyclable`, and evicted ones are put there.
     ///
     /// # Errors
-    /// When memory is out.
+    /// Returns an error if memory is exhausted.
     pub(in crate::gpu::frame) fn place_lights(
         &mut self,
         wanted: Wanted<'_>,
@@ -101,7 +101,7 @@ impl Loaded {
         }
         self.combined = None;
         let mut placed = self.place_each(wanted, recyclable)?;
-        // Settings that combine lights have one that casts shadows.
+        // Lights are only combined if at least one casts shadows.
         if let Some(slot) = placed.slots.iter().flatten().next() {
             let like = &self.lights[*slot].value;
             placed.bricks_to_combine = Some(like.filled.bricks().count());
@@ -111,12 +111,12 @@ impl Loaded {
         Ok(placed)
     }
 
-    /// Forgets the light volumes of a picture, which have been combined.
+    /// Drops the light volumes of a picture after they have been combined.
     pub(crate) fn forget_combined(&mut self, keys: &[Option<LightKey>]) {
         self.lights.retain(|light| !keys.iter().flatten().any(|key| key == light.key()));
     }
 
-    /// Finds or makes the light volumes of a picture and forgets the oldest of the others.
+    /// Finds or creates the volume of each light of a picture, and evicts the least recently used others.
     fn place_each(
         &mut self,
         wanted: Wanted<'_>,
@@ -126,7 +126,7 @@ impl Loaded {
         let Self { volume, tables, lights, .. } = self;
         let reach = picture_reach(volume, request, options.samples);
         let shadowed = full_keys.iter().flatten().count();
-        // Without shadows none is pushed out: whoever compares comes back to them.
+        // A picture without shadows evicts none, since comparisons return to them.
         let most_kept =
             if shadowed == 0 { lights.len() } else { shadowed + SPARE_LIGHT_VOLUMES.max(shadowed) };
         let at_coarse = |full: &LightKey| request.coarse.map(|resolution| full.coarse(resolution));
@@ -146,7 +146,7 @@ impl Loaded {
             let light = settings.lights[index].in_scene(&settings.camera);
             lookups_ahead(volume, settings, &light, key.resolution().divisor())
         };
-        // The margin lets all light pass.
+        // Cells of the margin are fully lit, which suffices for previews.
         let least_reach = least_reach(wanted, reach);
         let usable = |known: &Cached<LightKey, LightVolume>, index: usize, key: &LightKey| {
             let least = needed(key, least_reach, ahead_of(index, key));
@@ -166,14 +166,14 @@ impl Loaded {
                 .cloned();
             let key = found.clone().or(coarse).unwrap_or_else(|| full.clone());
             if found.is_none() {
-                // Two looks that are compared may differ in how far ahead they look: one volume serves both.
+                // Compared settings may differ in their look-up offsets, so one volume covers both.
                 let mut aheads = vec![ahead_of(index, &key)];
                 for known in lights.iter().filter(|known| *known.key() == key) {
                     aheads.extend(known.value.aheads.first().filter(|known| **known != aheads[0]));
                 }
                 recyclable
                     .extend(lights.extract_if(.., |known| *known.key() == key).map(|light| light.value));
-                // One that would be forgotten afterwards.
+                // Recycles a volume that would be evicted anyway.
                 if lights.len() >= most_kept {
                     let free = (0..lights.len()).filter(|&at| !is_wanted(lights[at].key()));
                     let oldest = free.min_by_key(|&at| lights[at].value.last_used);

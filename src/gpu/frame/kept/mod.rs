@@ -1,4 +1,4 @@
-//! What pictures share: which volumes a picture needs, which of them are there, and which are forgotten.
+//! Caches of light volumes that successive pictures share: attenuation, sky visibility, scattered light.
 
 pub(super) mod bounces;
 pub(in crate::gpu) mod light;

@@ -1,4 +1,4 @@
-//! How far from what it shows a picture looks up light, and in which cells.
+//! Reach of light look-ups from visible cells, and the cells of a light volume that a picture needs.
 
 use std::sync::Arc;
 
@@ -12,13 +12,13 @@ use crate::plan::{
     stretch_reach,
 };
 
-/// Cells that samples of previews see at most, whose pixels may be as wide as kernels stretch.
+/// Returns the maximum reach of samples in previews, in cells, whose pixels may be as wide as the maximum stretch.
 pub(super) fn widest() -> u8 {
     stretch_reach(MAX_STRETCH_LEVEL)
 }
 
-/// How many cells from what the transfer functions show a picture has samples. Every direction to look from has the same, so
-/// that orbiting refills nothing.
+/// Returns the distance of samples from visible cells, in cells. It is the same for all viewing directions, so that
+/// orbiting refills nothing.
 pub(super) fn sample_reach(volume: &GpuVolume, request: &Request, samples: u32) -> u8 {
     let Request { settings, size, .. } = request;
     let size = size.map(|n| n * samples);
@@ -31,25 +31,24 @@ pub(super) fn sample_reach(volume: &GpuVolume, request: &Request, samples: u32) 
     stretch_reach(stretch).saturating_add(slab)
 }
 
-/// How many cells from what the transfer functions show a picture looks up light: as far as its samples see, and a light bias
-/// further.
+/// Returns the distance of light look-ups from visible cells, in cells: the reach of samples plus the light bias.
 pub(super) fn picture_reach(volume: &GpuVolume, request: &Request, samples: u32) -> u8 {
     let settings = &request.settings;
     let towards_light = match settings.near_field() {
-        // Any bias fills for the largest, so that the next needs nothing.
+        // Any bias is filled for the maximum, so that changing it refills nothing.
         NearField::Off if settings.shadows.bias_voxels > 0.0 => bias_reach(MAX_BIAS_VOXELS),
         _ => 0,
     };
     sample_reach(volume, request, samples).saturating_add(towards_light)
 }
 
-/// What of a reach must be filled: a preview makes do with what a picture at full quality looks up.
+/// Returns the reach that must be filled: 0 for previews, which accept missing cells.
 pub(super) fn least_reach(wanted: Wanted<'_>, reach: u8) -> u8 {
     if wanted.request.coarse.is_some() || wanted.options.preview { 0 } else { reach }
 }
 
-/// Cells of a light volume, of `divisor` data voxels per voxel, in which a picture can look whose samples
-/// reach so far and that looks up light ahead of them.
+/// Returns the cells of a light volume, with `divisor` data voxels per voxel, that a picture can look up, given the
+/// reach of its samples and the offset of its look-ups.
 pub(super) fn needed_cells(
     volume: &GpuVolume,
     tables: &Tables,
@@ -65,8 +64,8 @@ pub(super) fn needed_cells(
     tables.needed_cells(volume, Needs { reach: reach.saturating_add(around), divisor, ahead })
 }
 
-/// Cells of blocks of `divisor`³ voxels in which a picture looks up light from all around whose samples reach so far: a little
-/// in front of them.
+/// Returns the cells of blocks of `divisor`³ voxels in which sky visibility or scattered light is looked up, slightly
+/// in front of the samples.
 pub(super) fn cells_around(
     volume: &GpuVolume,
     tables: &Tables,

@@ -1,4 +1,4 @@
-//! Which volume of the sky's visibility a picture needs, and which are kept.
+//! Cache of sky-visibility volumes: look-up, recycling and eviction for a picture.
 
 use std::sync::Arc;
 
@@ -13,22 +13,22 @@ use crate::gpu::sky::volume::{MOST_TEXELS, SkyVolume, divisor_on};
 use crate::gpu::volume::Gpu;
 use crate::plan::{FloorPlace, SkyKey};
 
-/// Volumes that are kept: that of the picture, that of its previews, and one that undoing a change finds again.
+/// Maximum number of cached volumes: one for the picture, one for its previews, and one for undoing a change.
 const MOST_KEPT: usize = 3;
 
-/// The sky of a picture: where its volume is, and what must be done before.
+/// Sky-visibility volume of a picture, and the work to fill it.
 #[derive(Debug, Default)]
 pub(in crate::gpu::frame) struct PlacedSky {
-    /// What the volume is made from; `None` without one.
+    /// Key of the volume; `None` without one.
     pub key: Option<SkyKey>,
-    /// Its place among those that are kept.
+    /// Index of the volume among the cached ones.
     pub slot: Option<usize>,
-    /// Its filling, if it must be filled first.
+    /// Work to fill the volume; `None` if it is already complete.
     pub build: Option<SkyBuild>,
 }
 
 impl PlacedSky {
-    /// The steps that fill it.
+    /// Returns the steps that fill the volume.
     pub(in crate::gpu::frame) fn steps(&self) -> Vec<Step> {
         let Some(build) = &self.build else { return Vec::new() };
         let mut steps = vec![Step::SkyBlocks];
@@ -39,10 +39,10 @@ impl PlacedSky {
 }
 
 impl Loaded {
-    /// Finds or makes room for the volume that a picture or preview needs.
+    /// Finds a cached volume that a picture or preview can use, or creates one.
     ///
     /// # Errors
-    /// When memory is out.
+    /// Returns an error if memory is exhausted.
     pub(in crate::gpu::frame) fn place_sky(
         &mut self,
         tools: &Tools,
@@ -56,7 +56,7 @@ impl Loaded {
         }
         let Some(full) = &keys.sky else { return Ok(PlacedSky::default()) };
         let coarse = request.coarse.map(|_| full.coarse());
-        // What a floor sees is found together with all else.
+        // The floor's sky visibility is computed together with that of the volume.
         let floor = FloorPlace::of(&request.settings);
         let has_floor =
             |known: &SkyVolume| floor.is_none() || known.floor.as_ref().map(|map| map.place) == floor;
@@ -64,7 +64,7 @@ impl Loaded {
             cells_around(&self.volume, &self.tables.value, options, (divisor, reach))
         };
         let reach = sample_reach(&self.volume, request, options.samples);
-        // The margin is open.
+        // Cells of the margin see the whole sky, which suffices for previews.
         let least_reach = least_reach(wanted, reach);
         let has_cells = |known: &SkyVolume| cells(known.divisor, least_reach).is_within(&known.filled);
         let find = |key: &SkyKey| {
@@ -81,7 +81,7 @@ impl Loaded {
         let divisor = divisor_on(context, self.volume.volume.dims(), key.resolution(), MOST_TEXELS);
         let mut filled = cells(divisor, reach);
         let mut margin = cells(divisor, reach.max(widest())).without(&filled);
-        // Two looks that are compared may show other things: one volume serves both.
+        // Compared settings may show different cells, so one volume covers both.
         for known in self.skies.iter().filter(|known| known.holds(&key)) {
             filled = Arc::new(filled.with(&known.value.filled));
             margin = margin.with(&known.value.margin).without(&filled);
@@ -101,7 +101,7 @@ impl Loaded {
         Ok(PlacedSky { key: Some(key), slot: Some(slot), build: Some(build) })
     }
 
-    /// Bytes of all volumes of visibility.
+    /// Returns the size of all sky-visibility volumes, in bytes.
     pub(crate) fn sky_bytes(&self) -> u64 {
         self.skies.iter().map(|sky| sky.value.bytes()).sum()
     }

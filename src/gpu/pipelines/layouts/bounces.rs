@@ -1,4 +1,4 @@
-//! What the shaders of scattered light bind.
+//! Bind-group layouts of the shaders for scattered light.
 
 use super::sky::{CELLS, SWEEP, TILES};
 use super::{CLAMPED, GRID, Layouts, PYRAMID_TEXTURE, TABLE, TABLE_BYTES};
@@ -11,7 +11,7 @@ const BOUNCE: Slot = Slot::uniform::<uniforms::Bounce>(3, "bound_bounce");
 const SCATTERING: Slot = Slot::list(4, "scattering", 16, Access::Read);
 const SUMS: Slot = Slot::list(5, "sums", 16, Access::Read);
 
-/// Shaders in `shaders/bounces`.
+/// Layouts of the shaders in `shaders/bounces`.
 pub(super) const LAYOUTS: Layouts = &[
     (
         "bounces/blocks.wgsl",

@@ -1,10 +1,10 @@
-//! What the shaders of the light pass bind.
+//! Bind-group layouts of the shaders for light volumes.
 
 use super::{EYE, LIGHTS, Layouts, PYRAMID, TABLE, VOLUME};
 use crate::gpu::pipelines::binding::{Access, Format, Shape, Slot};
 use crate::gpu::pipelines::uniforms;
 
-/// Shaders in `shaders/light`.
+/// Layouts of the shaders in `shaders/light`.
 pub(super) const LAYOUTS: Layouts = &[
     (
         "light/average.wgsl",

@@ -1,5 +1,5 @@
-//! What every shader binds, by the names that it gives its bindings: group by group, with their numbers, kinds and
-//! sizes. Compared with the shaders themselves by a test (`tests/shaders/bindings.rs`).
+//! Bind-group layouts of all compute shaders, by the names of the bindings in WGSL: numbers, kinds and sizes, group
+//! by group. A test compares them with the shaders (`tests/shaders/bindings.rs`).
 
 mod bounces;
 mod light;
@@ -8,11 +8,13 @@ mod sky;
 use super::binding::{Access, Format, Shape, Slot};
 use super::uniforms;
 
-/// A lookup table: [`crate::model::LUT_SIZE`] times seventeen floats, of which four are an entry, one its side, eleven
-/// the largest extinctions of runs, and one the integral of extinction up to it.
+/// Size of a lookup table in bytes: [`crate::model::LUT_SIZE`] times seventeen floats.
+///
+/// Four are the entry, one its side, eleven the maximum extinctions of runs, and one the integral of extinction up to
+/// it.
 const TABLE_BYTES: u64 = crate::model::LUT_SIZE as u64 * 17 * 4;
 
-/// Pairs of floats in a table of footprints, as `scatter/footprint.wgsl` declares it.
+/// Size of a footprint table in bytes: 512 pairs of floats, as `scatter/footprint.wgsl` declares it.
 const FOOTPRINT_TABLE_BYTES: u64 = 512 * 8;
 
 const GRID: Slot = Slot::uniform::<uniforms::Grid>(0, "bound_grid");
@@ -23,7 +25,7 @@ const PRESENCE_TEXTURE: Slot = Slot::sampled(9, "presence_texture", Shape::Volum
 
 const LIGHTING_PYRAMID: Slot = Slot::sampled(10, "lighting_pyramid", Shape::Volume);
 
-/// Density, with a pyramid for kernels that perspective stretches.
+/// Density texture, with the pyramid for kernels that perspective stretches.
 const VOLUME: &[Slot] = &[
     GRID,
     Slot::sampled(1, "density_texture", Shape::Volume),
@@ -33,11 +35,11 @@ const VOLUME: &[Slot] = &[
     PRESENCE_TEXTURE,
 ];
 
-/// The same, with what rays nearby see of it.
+/// Density and pyramid as in [`VOLUME`], with the pyramid that near-field rays read.
 const VOLUME_AND_LIGHTING: &[Slot] =
     &[VOLUME[0], VOLUME[1], VOLUME[2], VOLUME[3], VOLUME[4], VOLUME[5], LIGHTING_PYRAMID];
 
-/// The pyramid alone.
+/// Pyramid without the density texture.
 const PYRAMID: &[Slot] = &[GRID, PYRAMID_TEXTURE, CLAMPED, PRESENCE_TEXTURE];
 
 /// Names of the light volumes, in the order of their lights.
@@ -52,7 +54,7 @@ pub(crate) const ATTENUATION: [&str; 8] = [
     "attenuation_7",
 ];
 
-/// The light volumes.
+/// Attenuation volumes of up to eight lights.
 const LIGHTS: &[Slot] = &[
     Slot::sampled(0, ATTENUATION[0], Shape::Volume),
     Slot::sampled(1, ATTENUATION[1], Shape::Volume),
@@ -64,7 +66,7 @@ const LIGHTS: &[Slot] = &[
     Slot::sampled(7, ATTENUATION[7], Shape::Volume),
 ];
 
-/// The same, and the volumes of what is open of the sky and of bounced light.
+/// Attenuation volumes as in [`LIGHTS`], with the volumes of sky visibility and scattered light.
 const LIGHTS_AND_AROUND: &[Slot] = &[
     LIGHTS[0],
     LIGHTS[1],
@@ -78,7 +80,7 @@ const LIGHTS_AND_AROUND: &[Slot] = &[
     Slot::sampled(9, "bounced_texture", Shape::Volume),
 ];
 
-/// A level of the pyramid in the making.
+/// Bindings of the passes that resample a pyramid level.
 const RESAMPLE: &[Slot] = &[
     Slot::sampled(0, "source", Shape::Volume),
     Slot::sampler(1, "clamped"),
@@ -87,7 +89,7 @@ const RESAMPLE: &[Slot] = &[
     Slot::list(5, "bricks", 4, Access::Read),
 ];
 
-/// A table, and what the eye and its lights are.
+/// Uniform of the eye and its lights.
 const EYE: Slot = Slot::uniform::<uniforms::Eye>(0, "bound_eye");
 const TABLE: Slot = Slot::list(1, "table", TABLE_BYTES, Access::Read);
 const LIGHTING_TABLE: Slot = Slot::list(4, "lighting_table", TABLE_BYTES, Access::Read);
@@ -97,7 +99,7 @@ const SHEETS: Slot = Slot::list(6, "sheets", 4, Access::ReadWrite);
 const FOOTPRINT_TABLE: Slot = Slot::list(7, "footprint_table", FOOTPRINT_TABLE_BYTES, Access::Read);
 const RAYS: Slot = Slot::list(8, "rays", 16, Access::ReadWrite);
 
-/// What display passes read; `shown` is what they write.
+/// Bindings of the display passes, which write `shown` with this format.
 const fn display(shown: Format) -> [Slot; 4] {
     [
         Slot::uniform::<uniforms::Display>(0, "bound_display"),
@@ -110,18 +112,18 @@ const fn display(shown: Format) -> [Slot; 4] {
 const DISPLAY: &[Slot] = &display(Format::Of(wgpu::TextureFormat::Rgba8Unorm));
 const DISPLAY_DEEP: &[Slot] = &display(Format::Of(wgpu::TextureFormat::Rgba32Float));
 
-/// The groups of a shader.
+/// Bind groups of a shader.
 pub(crate) type Groups = &'static [&'static [Slot]];
 
-/// Shaders, and what each binds.
+/// Shaders with the bind groups of each.
 pub(crate) type Layouts = &'static [(&'static str, Groups)];
 
-/// Every compute shader, and what it binds.
+/// Returns every compute shader with its bind groups.
 pub(crate) fn layouts() -> impl Iterator<Item = &'static (&'static str, Groups)> {
     [OTHERS, bounces::LAYOUTS, light::LAYOUTS, sky::LAYOUTS].into_iter().flatten()
 }
 
-/// All but those of light, sky and bounces.
+/// Layouts of all shaders but those of light, sky and scattered light.
 const OTHERS: Layouts = &[
     (
         "eye/floor.wgsl",
@@ -296,11 +298,11 @@ const OTHERS: Layouts = &[
 ];
 
 #[cfg(feature = "testing")]
-/// What a compute shader binds: its name, and for each group the name and the entry of each binding.
+/// Bindings of a compute shader: its name, and for each group the name and the layout entry of each binding.
 pub type ShaderBindings = (&'static str, Vec<Vec<(&'static str, wgpu::BindGroupLayoutEntry)>>);
 
-/// The bindings of every compute shader, where single channels are stored in `storage`, for targets of
-/// `target`: for whoever compares them with the shaders.
+/// Returns the bindings of every compute shader. `storage` is the single-channel storage format, `target` the format
+/// of target textures. A test compares them with the shaders.
 #[cfg(feature = "testing")]
 pub fn shader_bindings(storage: wgpu::TextureFormat, target: wgpu::TextureFormat) -> Vec<ShaderBindings> {
     let group =

@@ -1,21 +1,21 @@
-//! What the shaders of a sky bind.
+//! Bind-group layouts of the shaders for sky visibility.
 
 use super::{CLAMPED, GRID, Layouts, PYRAMID_TEXTURE, TABLE};
 use crate::gpu::pipelines::binding::{Access, Format, Shape, Slot};
 use crate::gpu::pipelines::uniforms;
 
-/// Rays through blocks.
+/// Uniform of a batch of rays through blocks.
 pub(super) const SWEEP: Slot = Slot::uniform::<uniforms::Sweep>(0, "bound_sweep");
 
-/// Where they are followed.
+/// List of the tiles in which rays are followed.
 pub(super) const TILES: Slot = Slot::list(4, "tiles", 4, Access::Read);
 
-/// Blocks in which something is met.
+/// List of the cells of blocks in which something may attenuate light.
 pub(super) const CELLS: Slot = Slot::list(2, "cells", 4, Access::Read);
 
 const FLOOR_PLACE: Slot = Slot::uniform::<uniforms::FloorMap>(5, "bound_map");
 
-/// Shaders in `shaders/sky`.
+/// Layouts of the shaders in `shaders/sky`.
 pub(super) const LAYOUTS: Layouts = &[
     (
         "sky/blocks.wgsl",

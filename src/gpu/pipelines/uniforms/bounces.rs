@@ -1,10 +1,10 @@
-//! What shaders of scattered light mirror.
+//! Uniforms of the shaders for scattered light.
 
 use bytemuck::{Pod, Zeroable};
 
 use super::{Light, Space};
 
-/// `shading/bounces.wgsl`.
+/// Look-up of scattered light, as declared in `shading/bounces.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Bounces {
@@ -16,7 +16,7 @@ pub struct Bounces {
     pub pad2: f32,
 }
 
-/// `bounces/bounce.wgsl`.
+/// Parameters of passes over blocks of scattered light, as declared in `bounces/bounce.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Bounce {
@@ -26,7 +26,7 @@ pub struct Bounce {
     pub least: f32,
 }
 
-/// `bounces/first.wgsl`.
+/// Scene of the single-scattering pass, as declared in `bounces/first.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct First {

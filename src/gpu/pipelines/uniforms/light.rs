@@ -1,10 +1,10 @@
-//! What shaders of lights mirror.
+//! Uniforms of the shaders for lights and light volumes.
 
 use bytemuck::{Pod, Zeroable};
 
 use super::{Cut, Space};
 
-/// `shading/lights.wgsl`.
+/// Light source, as declared in `shading/lights.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Light {
@@ -28,7 +28,7 @@ pub struct Light {
     pub pad1: f32,
 }
 
-/// `shading/lights.wgsl`.
+/// Shading and shadow parameters, as declared in `shading/lights.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Shading {
@@ -50,7 +50,7 @@ pub struct Shading {
     pub pad2: f32,
 }
 
-/// `light/raycast.wgsl`.
+/// Parameters of casting rays from light voxels, as declared in `light/raycast.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Raycast {
@@ -65,7 +65,7 @@ pub struct Raycast {
     pub shading_cut: Cut,
 }
 
-/// `light/average.wgsl`.
+/// Parameters of averaging an area light's points, as declared in `light/average.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Average {
@@ -77,7 +77,7 @@ pub struct Average {
     pub pad2: u32,
 }
 
-/// `light/floor_shadow.wgsl`.
+/// Parameters of a floor shadow map, as declared in `light/floor_shadow.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct FloorShadow {

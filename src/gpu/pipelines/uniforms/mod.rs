@@ -1,5 +1,5 @@
-//! Every struct that a shader mirrors, field by field. `tests/shaders/structs.rs` compares names, offsets
-//! and sizes with what the shaders declare.
+//! Uniform structs, mirrored field by field in WGSL. `tests/shaders/structs.rs` compares names, offsets and sizes
+//! with the declarations in the shaders.
 
 #![cfg_attr(
     feature = "testing",
@@ -28,7 +28,7 @@ fn vec2(v: DVec2) -> [f32; 2] {
     v.as_vec2().into()
 }
 
-/// The three rows of an affine map, the translation in w.
+/// Returns the three rows of an affine map, with the translation in w.
 pub(crate) fn rows(map: &DAffine3) -> [[f32; 4]; 3] {
     let transposed = map.matrix3.transpose();
     let row = |linear: DVec3, offset: f64| [linear.x as f32, linear.y as f32, linear.z as f32, offset as f32];
@@ -39,7 +39,7 @@ pub(crate) fn rows(map: &DAffine3) -> [[f32; 4]; 3] {
     ]
 }
 
-/// `sheets/sheet_frame.wgsl`.
+/// Rays and slabs of a stack of sheets, as declared in `sheets/sheet_frame.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct SheetFrame {
@@ -84,7 +84,7 @@ impl SheetFrame {
     }
 }
 
-/// `density/cut.wgsl`.
+/// Crop box and clip plane, as declared in `density/cut.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Cut {
@@ -96,7 +96,8 @@ pub struct Cut {
 }
 
 impl Cut {
-    /// Where nothing is cut, faces are so many voxels away: far from every volume, and far from overflow.
+    /// Distance, in voxels, of the faces and the plane where nothing is cut: far outside every volume, and far from
+    /// overflow.
     const AWAY: f64 = 1e9;
 
     pub fn new(region: &Region) -> Self {
@@ -113,7 +114,7 @@ impl Cut {
     }
 }
 
-/// `density/volume.wgsl`.
+/// Voxel grid and texture scales, as declared in `density/volume.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Grid {
@@ -127,7 +128,7 @@ pub struct Grid {
     pub pad2: f32,
 }
 
-/// `volume/resample.wgsl`.
+/// Parameters of filling a pyramid level, as declared in `volume/levels.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Resample {
@@ -137,7 +138,7 @@ pub struct Resample {
     pub pad1: u32,
 }
 
-/// `scatter/slab.wgsl`.
+/// Parameters of a slab of the scattering engine, as declared in `scatter/slab.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Scatter {
@@ -168,7 +169,7 @@ pub struct Scatter {
     pub pad2: f32,
 }
 
-/// `scatter/footprints.wgsl`.
+/// Phase of compositing footprints, as declared in `scatter/footprints.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Phase {
@@ -182,7 +183,7 @@ pub struct Phase {
     pub pad2: u32,
 }
 
-/// `sheets/march.wgsl`.
+/// Parameters of marching light through slabs, as declared in `sheets/march.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct March {
@@ -200,7 +201,7 @@ pub struct March {
     pub shading_cut: Cut,
 }
 
-/// `light/backproject.wgsl`.
+/// Parameters of the back-projection, as declared in `light/backproject.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Backprojection {
@@ -222,7 +223,7 @@ pub struct Backprojection {
     pub pad1: f32,
 }
 
-/// `light/combine.wgsl`.
+/// Parameters of combining lights, as declared in `light/combine.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Combine {
@@ -234,7 +235,7 @@ pub struct Combine {
     pub pad2: f32,
 }
 
-/// `common/space.wgsl`.
+/// Transforms between index and scene space, as declared in `common/space.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Space {
@@ -261,7 +262,7 @@ impl Space {
     }
 }
 
-/// `shading/shade.wgsl`.
+/// Parameters of the eye pass, as declared in `shading/shade.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Eye {
@@ -287,7 +288,7 @@ pub struct Eye {
     pub lights: [Light; crate::model::MAX_LIGHTS],
 }
 
-/// `eye/floor.wgsl`.
+/// Parameters of the floor pass, as declared in `eye/floor.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Floor {
@@ -314,7 +315,7 @@ pub struct Floor {
     pub lights: [Light; crate::model::MAX_LIGHTS],
 }
 
-/// `output/tone_map.wgsl`.
+/// Parameters of the display pass, as declared in `output/tone_map.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Display {

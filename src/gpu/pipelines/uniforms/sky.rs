@@ -1,13 +1,13 @@
-//! What shaders of a sky mirror.
+//! Uniforms of the shaders for sky visibility.
 
 use bytemuck::{Pod, Zeroable};
 
 use super::Cut;
 
-/// Most directions of a batch, as `sky/rays.wgsl` has it.
+/// Maximum number of directions in a batch, as in `sky/rays.wgsl`.
 pub const MAX_SKY_RAYS: usize = 8;
 
-/// `shading/sky_light.wgsl`.
+/// Radiance and look-up of the sky, as declared in `shading/sky.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Sky {
@@ -18,7 +18,7 @@ pub struct Sky {
     pub ahead: f32,
 }
 
-/// `sky/places.wgsl`.
+/// Blocks of averaged extinction, as declared in `sky/places.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Blocks {
@@ -31,7 +31,7 @@ pub struct Blocks {
     pub shading_cut: Cut,
 }
 
-/// `sky/rays.wgsl`.
+/// Parallel rays of one direction, as declared in `sky/rays.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct SkyRays {
@@ -50,7 +50,7 @@ pub struct SkyRays {
     pub pad1: f32,
 }
 
-/// `sky/rays.wgsl`.
+/// Batch of directions of a sweep, as declared in `sky/rays.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Sweep {
@@ -63,7 +63,7 @@ pub struct Sweep {
     pub rays: [SkyRays; MAX_SKY_RAYS],
 }
 
-/// `sky/floor_place.wgsl`.
+/// Position of the floor's sky map, as declared in `sky/floor_place.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct FloorMap {
