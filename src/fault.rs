@@ -1,46 +1,46 @@
-//! Faults on purpose: what the hidden option `--fault` asks for, so that tests see what the ordinary program does when
-//! memory, disk, device or a thread fails it.
+//! Fault injection: the hidden option `--fault` makes memory, disk, device or a thread fail, so that tests see how
+//! the ordinary program reacts.
 //!
-//! Places that can fail ask here. Without the option, each asks one atomic number.
+//! Code that can fail queries this module. Without the option, each query reads one atomic flag.
 
 use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{PoisonError, RwLock};
 use std::time::Duration;
 
-/// What can be told to panic.
+/// Thread that can be made to panic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Place {
-    /// The thread that opens volumes.
+    /// Thread that opens volumes.
     Loader,
-    /// The thread that renders the window's pictures.
+    /// Thread that renders the window's pictures.
     Worker,
-    /// The window's own thread.
+    /// Main thread of the window.
     Window,
-    /// The thread that exports.
+    /// Thread that exports pictures.
     Export,
 }
 
-/// A fault.
+/// Fault to be injected, as given by `--fault`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Fault {
-    /// The window's device and that of its pictures are lost in its N-th frame.
+    /// Loss of the window's and the renderer's devices in the window's N-th frame.
     Lost(u64),
-    /// The device of the pictures alone is lost then.
+    /// Loss of the renderer's device alone in the window's N-th frame.
     PicturesLost(u64),
-    /// The adapter refuses memory for the K-th texture or buffer.
+    /// Allocation failure of the adapter for the K-th texture or buffer.
     OutOfMemory(u64),
-    /// A thread panics at its next work.
+    /// Panic of a thread at its next task.
     Panic(Place),
-    /// No shader can be translated.
+    /// Failure to compile any shader.
     Shader,
-    /// Every wait for the adapter takes so much longer.
+    /// Additional delay of every wait for the adapter.
     Slow(Duration),
-    /// Every frame of the window takes so much longer.
+    /// Additional delay of every frame of the window.
     SlowFrames(Duration),
-    /// Nothing can be written.
+    /// Failure of every write to a file.
     FullDisk,
-    /// The N-th block that is read of a volume cannot be.
+    /// Failure to read the N-th block of a volume.
     ReadError(u64),
 }
 
@@ -82,61 +82,61 @@ impl FromStr for Fault {
     }
 }
 
-/// The faults of this process, and whether there are any.
+/// Injected faults of this process, and a flag that is set if there are any.
 static FAULTS: RwLock<Vec<Fault>> = RwLock::new(Vec::new());
 static ANY: AtomicBool = AtomicBool::new(false);
 
-/// How often something has happened that a fault counts.
+/// Counter of events that a fault refers to.
 #[derive(Debug, Default)]
 pub(crate) struct Count(AtomicU64);
 
 impl Count {
-    /// None yet.
+    /// Creates a counter at zero.
     pub(crate) const fn new() -> Self {
         Self(AtomicU64::new(0))
     }
 
-    /// One more, and how many that makes.
+    /// Counts one event and returns the total, this one included.
     pub(crate) fn next(&self) -> u64 {
         self.0.fetch_add(1, Ordering::Relaxed) + 1
     }
 
-    /// How many so far, since faults were chosen first.
+    /// Returns the events counted since faults were first chosen.
     #[cfg(test)]
     pub(crate) fn so_far(&self) -> u64 {
         self.0.load(Ordering::Relaxed)
     }
 }
 
-/// Chooses the faults of this process.
+/// Sets the faults to be injected into this process.
 #[cfg(any(feature = "cli", test))]
 pub(crate) fn choose(faults: Vec<Fault>) {
     ANY.store(!faults.is_empty(), Ordering::Relaxed);
     *FAULTS.write().unwrap_or_else(PoisonError::into_inner) = faults;
 }
 
-/// Whether one of the faults that were chosen is such a one.
+/// Returns true if one of the chosen faults satisfies a condition.
 fn any(is_it: impl FnMut(&Fault) -> bool) -> bool {
     ANY.load(Ordering::Relaxed) && FAULTS.read().unwrap_or_else(PoisonError::into_inner).iter().any(is_it)
 }
 
-/// Whether a fault was chosen.
+/// Returns true if a fault was chosen.
 pub(crate) fn is_on(fault: Fault) -> bool {
     any(|chosen| *chosen == fault)
 }
 
-/// Counts one, and says whether that is the one that a fault names. Nothing is counted unless faults were chosen.
+/// Counts one event and returns true if a fault is due at it. Nothing is counted unless faults were chosen.
 pub(crate) fn is_due(count: &Count, fault: impl Fn(u64) -> Fault) -> bool {
     ANY.load(Ordering::Relaxed) && is_on(fault(count.next()))
 }
 
-/// Panics where that was chosen.
+/// Panics if that was chosen for this thread.
 #[cfg(any(feature = "window", test))]
 pub(crate) fn may_panic(place: Place) {
     assert!(!is_on(Fault::Panic(place)), "a fault was asked for: panic in {place:?}");
 }
 
-/// Sum of the durations that `of` gives for the chosen faults.
+/// Sums the durations that `of` returns for the chosen faults.
 fn sum(of: impl Fn(&Fault) -> Option<Duration>) -> Duration {
     let mut by = Duration::ZERO;
     any(|chosen| {
@@ -146,12 +146,12 @@ fn sum(of: impl Fn(&Fault) -> Option<Duration>) -> Duration {
     by
 }
 
-/// How much longer waits for the adapter take.
+/// Returns the additional delay of waits for the adapter.
 pub(crate) fn slowness() -> Duration {
     sum(|chosen| if let Fault::Slow(longer) = chosen { Some(*longer) } else { None })
 }
 
-/// How much longer frames of the window take.
+/// Returns the additional delay of the window's frames.
 #[cfg(any(feature = "window", test))]
 pub(crate) fn frame_delay() -> Duration {
     sum(|chosen| if let Fault::SlowFrames(longer) = chosen { Some(*longer) } else { None })

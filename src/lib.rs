@@ -1,4 +1,4 @@
-//! Chiaroscuro: see the shape of volume data.
+//! Chiaroscuro: a viewer for volume data with volumetric shadows.
 //!
 //! ```
 //! use chiaroscuro::data::load::{LoadControl, LoadOptions};
@@ -17,22 +17,22 @@
 //! ```
 //!
 //! `examples/` writes such a picture to a file and shows a light volume as an array, a turntable, and the renderer
-//! inside another wgpu program. [`gpu::Renderer`] is the way to everything else.
+//! inside another wgpu program. [`gpu::Renderer`] is the entry point to everything else.
 //!
-//! True volumetric shadows after *Splatting With Shadows* (Nulkar & Mueller, 2001), below cited as
-//! P: light is attenuated on its way to the material and again on its way to the eye, and both
-//! passes are image-aligned sheet-buffer splatting.
+//! Volumetric shadows follow *Splatting With Shadows* (Nulkar & Mueller, 2001), cited below as P: light is attenuated
+//! on its way to the material and again on its way to the eye, and both passes are image-aligned sheet-buffer
+//! splatting.
 //!
 //! Modules import downwards only, in this order:
 //!
-//! | module | holds |
+//! | module | contents |
 //! |---|---|
-//! | `fault` | faults on purpose, for tests |
+//! | `fault` | fault injection for tests |
 //! | [`math`] | spaces and boxes |
 //! | [`data`] | volumes: readers, built-ins, histograms, bricks |
-//! | [`model`] | `Settings`, the one value that is the whole look |
-//! | [`plan`] | the keys of what a picture needs; the geometry of the passes |
-//! | [`export`] | files that go out: pictures, pictures that move |
+//! | [`model`] | `Settings`, the single value that describes the whole look |
+//! | [`plan`] | cache keys of a picture's products; geometry of the passes |
+//! | [`export`] | writing files: pictures, animations, volumes |
 //! | `reference` | the paper in f64, literal and slow; with the feature `testing` |
 //! | [`gpu`] | the renderer |
 //! | `app` | the window; with the feature `window` |

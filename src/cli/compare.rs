@@ -1,4 +1,4 @@
-//! `chiaroscuro compare`: several looks of one scene side by side, and how far they are apart.
+//! Command `chiaroscuro compare`: several looks of one scene side by side, and their distances.
 
 use std::path::PathBuf;
 
@@ -12,10 +12,10 @@ use crate::export::{check_ending, check_writable, export_png};
 use crate::gpu::{Distance, Picture, RenderOptions, Renderer, is_empty_light};
 use crate::model::Variant;
 
-/// Pixels between two pictures.
+/// Width of the gap between two pictures, in pixels.
 const GAP: usize = 4;
 
-/// The names of the looks that need nothing else.
+/// Parser for the names of all variants that need no parameters.
 fn names() -> PossibleValuesParser {
     Variant::PLAIN.map(|variant| variant.name()).into()
 }
@@ -36,7 +36,7 @@ pub(super) struct CompareArgs {
     looks: Vec<String>,
 }
 
-/// Renders the looks, writes them in one row and says how far each is from the first.
+/// Renders the looks, writes them in one row, and prints the distance of each from the first.
 pub(super) fn run(args: &CompareArgs) -> Result<(), CliError> {
     args.scene.keep_apart(&[&args.output])?;
     check_ending(&args.output, &["png"], "looks side by side are written as .png")?;
@@ -65,7 +65,7 @@ pub(super) fn run(args: &CompareArgs) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Pictures of one size from left to right, with transparent gaps.
+/// Places pictures of equal size in one row, with transparent gaps.
 fn row_of(pictures: &[Picture]) -> Picture {
     let [width, height] = pictures.first().map_or([0, 0], |picture| picture.size.map(|n| n as usize));
     let whole = (width + GAP) * pictures.len() - GAP.min((width + GAP) * pictures.len());

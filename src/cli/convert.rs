@@ -1,4 +1,4 @@
-//! `chiaroscuro convert`.
+//! Command `chiaroscuro convert`: writes a volume in another file format.
 
 use std::path::{Path, PathBuf};
 
@@ -11,12 +11,12 @@ use crate::data::load::{Explanation, LoadError, ReadFiles};
 use crate::data::{Headings, ValueRange, VoxelType};
 use crate::export::{ConvertError, NumberWish, Outgoing, VolumeFormat, check_writable, write_volume};
 
-/// What standard output is for.
+/// Name that stands for standard output.
 const STANDARD_OUTPUT: &str = "-";
 
 /// Arguments of `convert`.
 #[derive(Debug, Args)]
-// `--type` is what is written.
+// In this command, `--type` is the type that is written.
 #[command(mut_arg("voxel_type", |arg| arg.long("input-type")))]
 pub(super) struct ConvertArgs {
     #[arg(help = "Volume: a file, a folder of slices, or builtin:NAME[:N]")]
@@ -48,7 +48,7 @@ pub(super) struct ConvertArgs {
     load: LoadArgs,
 }
 
-/// `-1000:3000`
+/// Parses a range of values such as `-1000:3000`.
 fn parse_values(text: &str) -> Result<ValueRange, String> {
     let parsed = text.split_once(':').and_then(|(low, high)| {
         let [low, high]: [f64; 2] = [low.trim().parse().ok()?, high.trim().parse().ok()?];
@@ -57,13 +57,13 @@ fn parse_values(text: &str) -> Result<ValueRange, String> {
     parsed.ok_or_else(|| format!("expected two values, the lower first, as in -1000:3000, found {text:?}"))
 }
 
-/// `nii.gz`
+/// Parses a file name extension of a volume format, such as `nii.gz`.
 fn parse_format(text: &str) -> Result<VolumeFormat, String> {
     let name = format!("volume.{}", text.trim_start_matches('.'));
     VolumeFormat::of_path(Path::new(&name)).ok_or_else(|| format!("expected {}", endings()))
 }
 
-/// All endings, for messages.
+/// Lists the extensions of all volume formats, for messages.
 fn endings() -> String {
     let all: Vec<String> = VolumeFormat::ALL
         .iter()
@@ -78,7 +78,7 @@ impl ConvertArgs {
         CliError::Usage(format!("{}: {why}", self.input.display()))
     }
 
-    /// The format that is written.
+    /// Returns the format to be written.
     fn output_format(&self) -> Result<VolumeFormat, CliError> {
         let is_standard_output = self.output == Path::new(STANDARD_OUTPUT);
         let by_name = VolumeFormat::of_path(&self.output);
@@ -110,13 +110,13 @@ impl ConvertArgs {
     }
 }
 
-/// What is wrong with a volume, in the words of this command: what readers know as `--type` has another name here.
+/// Adapts the messages of readers to this command: the readers' `--type` is called `--input-type` here.
 fn in_own_words(error: LoadError) -> LoadError {
     let own = |mut explanation: Box<Explanation>| {
         for text in [&mut explanation.why, &mut explanation.help] {
             *text = text.replace("--type", "--input-type");
         }
-        // Before it stands the name of the file, which may be anything.
+        // The file name before it may contain anything.
         if let Some(file) = explanation.place.strip_suffix(", --type") {
             explanation.place = format!("{file}, --input-type");
         }
@@ -134,11 +134,11 @@ pub(super) fn run(args: &ConvertArgs) -> Result<(), CliError> {
     let format = args.output_format()?;
     keep_apart(&[&args.input], &[&args.output], args.force)?;
     let output = destination(&args.output, format.endings()[0])?;
-    // Before anything is read that may take its time.
+    // Checked before the input is read, which may take long.
     check_writable(output.path())?;
     let read = ReadFiles::watch();
     let volume = open_with_word(&args.input, &args.load.load_options()?).map_err(in_own_words)?;
-    // A header has named others, a slice or a folder has brought its series.
+    // A header may refer to other files, and a slice or folder belongs to a series.
     let read = read.paths();
     keep_apart(&read.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[&args.output], args.force)?;
     let wish = NumberWish { voxel_type: args.written_type, rescaled: args.rescale, padding: args.padding };

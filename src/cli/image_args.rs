@@ -1,4 +1,4 @@
-//! How pictures are taken, as the command line says it.
+//! Command-line arguments that describe a still picture.
 
 use std::path::Path;
 
@@ -29,7 +29,7 @@ pub(super) struct ImageArgs {
     marks: Vec<Mark>,
 }
 
-/// What is written over a picture.
+/// Mark drawn over a picture, as named on the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 #[value(rename_all = "snake_case")]
 enum Mark {
@@ -38,7 +38,7 @@ enum Mark {
     Legend,
 }
 
-/// Bits of each colour.
+/// Bits per colour channel of a PNG file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Bits {
     #[value(name = "8")]
@@ -48,7 +48,7 @@ enum Bits {
 }
 
 impl ImageArgs {
-    /// What is asked for, in a file of this name.
+    /// Returns the image spec for a file with this name.
     pub(super) fn spec(&self, path: &Path) -> ImageSpec {
         let wanted = match self.bits {
             Bits::Eight => Depth::Eight,

@@ -1,4 +1,4 @@
-//! `chiaroscuro info`.
+//! Command `chiaroscuro info`: prints what is known about a volume, as text or JSON.
 
 use std::path::PathBuf;
 
@@ -12,10 +12,10 @@ use crate::data::{CountedLabel, DataKind, Dataset, Hints, SpacingUnit, ValueRang
 use crate::gpu::{bytes_with_one_light, small_volume};
 use crate::model::auto;
 
-/// Percentiles that are listed.
+/// Percentiles of the values that are listed.
 const PERCENTILES: [u32; 7] = [1, 5, 25, 50, 75, 95, 99];
 
-/// Labels that are listed for people; machines get all.
+/// Maximum number of labels in the text output; JSON has all of them.
 const LISTED_LABELS: usize = 20;
 
 /// Arguments of `info`.
@@ -33,7 +33,7 @@ pub(super) struct InfoArgs {
     load: LoadArgs,
 }
 
-/// Prints what is known about a volume.
+/// Prints the properties of a volume.
 pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     let volume = open_for_a_glance(&args.file, &args.load.load_options()?)?;
     let volume = corrected_by(&args.file, volume, &args.set)?;
@@ -106,7 +106,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Distances between voxels in the unit that suits them, for people.
+/// Formats the voxel spacing in a suitable unit, for the text output.
 fn spacing_line(volume: &Volume) -> String {
     let spacing: [f64; 3] = volume.spacing_mm().into();
     let (unit, symbol) = if volume.has_unknown_scale() {
@@ -119,17 +119,17 @@ fn spacing_line(volume: &Volume) -> String {
     format!("  spacing      {x} × {y} × {z} {symbol}")
 }
 
-/// A length with the digits that it has in millimetres: another unit adds none but those of rounding.
+/// Converts a length to another unit without adding digits: conversion errors are rounded off.
 fn in_unit(length_mm: f64, unit: SpacingUnit) -> f64 {
     if unit.mm() == 1.0 {
         return length_mm;
     }
     let length = length_mm / unit.mm();
-    // Numbers of 64 bits are right to 15 digits.
+    // Numbers of 64 bits are accurate to 15 digits.
     format!("{length:.14e}").parse().unwrap_or(length)
 }
 
-/// A kind of data, for machines.
+/// Returns the kind of data as JSON.
 fn kind(kind: &DataKind) -> Value {
     let name = kind.name().key();
     match kind {
@@ -141,7 +141,7 @@ fn kind(kind: &DataKind) -> Value {
     }
 }
 
-/// What the file says of the values, for machines.
+/// Returns the file's metadata about the values as JSON.
 fn hints(hints: &Hints) -> Value {
     let labels: Vec<Value> = hints
         .labels
@@ -160,7 +160,7 @@ fn hints(hints: &Hints) -> Value {
     })
 }
 
-/// What the file says of the values, for people.
+/// Formats the file's metadata about the values, for the text output.
 fn hint_lines(hints: &Hints) -> Vec<String> {
     let mut lines = Vec::new();
     let mut add = |name: &str, text: Option<&str>| {
@@ -178,10 +178,10 @@ fn hint_lines(hints: &Hints) -> Vec<String> {
     lines
 }
 
-/// A label of a label map.
+/// Properties of one label of a label map.
 struct LabelFacts {
     number: i64,
-    /// What the file calls it; empty if it does not say.
+    /// Name of the label in the file; empty if there is none.
     name: String,
     voxels: u64,
 }
@@ -197,7 +197,7 @@ impl LabelFacts {
     }
 }
 
-/// The labels of a label map; of other data none.
+/// Returns the labels of a label map; empty for other data.
 fn labels(volume: &Volume) -> Vec<LabelFacts> {
     let is_label_map = matches!(volume.kind().kind, DataKind::LabelMap { .. });
     let counted = volume.labels().filter(|_| is_label_map).map_or(&[][..], |labels| labels.labels());
@@ -209,7 +209,7 @@ fn labels(volume: &Volume) -> Vec<LabelFacts> {
     counted.iter().map(facts).collect()
 }
 
-/// The labels of a label map, for people.
+/// Formats the labels of a label map, for the text output.
 fn label_lines(volume: &Volume) -> Vec<String> {
     let all = labels(volume);
     let more = all.len().saturating_sub(LISTED_LABELS);
@@ -217,7 +217,7 @@ fn label_lines(volume: &Volume) -> Vec<String> {
     all.iter().take(LISTED_LABELS).map(LabelFacts::line).chain(rest).collect()
 }
 
-/// The looks that are proposed, for `--look`.
+/// Returns the suggested looks as JSON; `--look` selects one by number.
 fn looks(loaded: &Dataset) -> Result<Value, CliError> {
     let first = auto::first_settings(loaded.volume(), loaded.histogram());
     let small = small_volume(loaded)?;

@@ -1,4 +1,4 @@
-//! `chiaroscuro light-volume`.
+//! Command `chiaroscuro light-volume`: writes a light's attenuation volume, or a slice of it.
 
 use std::path::PathBuf;
 
@@ -28,19 +28,19 @@ pub(super) struct LightVolumeArgs {
     light: usize,
 }
 
-/// A slice across an axis of the light volume.
+/// Slice of the light volume across one axis.
 #[derive(Debug, Clone, Copy)]
 struct Slice {
-    /// 0, 1 or 2 for x, y or z.
+    /// Index of the axis: 0, 1 or 2 for x, y or z.
     axis: usize,
-    /// Where along it, in voxels.
+    /// Position along the axis, in voxels.
     index: usize,
 }
 
-/// Index axes, as users name them.
+/// Names of the index axes on the command line.
 const AXES: [char; 3] = ['x', 'y', 'z'];
 
-/// `z:40`
+/// Parses a slice such as `z:40`.
 fn parse_slice(text: &str) -> Result<Slice, String> {
     let parsed = text.split_once(':').and_then(|(axis, index)| {
         let axis = AXES.iter().position(|name| axis == name.to_string())?;
@@ -49,7 +49,7 @@ fn parse_slice(text: &str) -> Result<Slice, String> {
     parsed.ok_or_else(|| format!("expected x, y or z and a number, as in z:40, found {text:?}"))
 }
 
-/// Fills and writes one attenuation volume.
+/// Fills and writes the attenuation volume of one light.
 pub(super) fn run(args: &LightVolumeArgs) -> Result<(), CliError> {
     args.scene.keep_apart(&[&args.output])?;
     let output = destination(&args.output, if args.slice.is_some() { "png" } else { "nrrd" })?;
@@ -57,7 +57,7 @@ pub(super) fn run(args: &LightVolumeArgs) -> Result<(), CliError> {
     let look = args.scene.look(&loaded)?;
     let mut renderer = Renderer::new(&context)?;
     let mut settings = look.settings(&mut renderer, &loaded)?;
-    // Combined with others, it would be gone.
+    // In a combined volume, this light could not be separated.
     settings.shadows.storage = LightStorage::PerLight;
     let options = RenderOptions { fill_everything: true, ..RenderOptions::default() };
     let size = [16, 16];

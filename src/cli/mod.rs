@@ -1,4 +1,4 @@
-//! The command line: arguments become the same `Settings` and go to the same renderer as in the
+//! Command line: arguments become the same [`Settings`](crate::model::Settings) and go to the same renderer as in the
 //! window.
 
 mod bench;
@@ -52,7 +52,7 @@ struct Args {
 }
 
 impl Args {
-    /// What the window is to be opened with.
+    /// Returns the request with which the window is opened.
     fn request(self) -> Result<ViewerRequest, CliError> {
         let Self { command: _, file, session, volume, trust_paths, load, fault: _ } = self;
         if let (Some(file), Some(volume)) = (&file, &volume)
@@ -68,7 +68,7 @@ impl Args {
     }
 }
 
-/// Whether a file holds a look and not a volume, by its name.
+/// Returns true if a file's name indicates a look (session or picture) and not a volume.
 fn is_look(path: &Path) -> bool {
     may_carry_record(path) || path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
 }
@@ -93,22 +93,22 @@ enum Command {
     Bench(bench::BenchArgs),
 }
 
-/// What the window is to be opened with.
+/// Request with which the window is opened.
 #[derive(Debug, Clone)]
 pub struct ViewerRequest {
-    /// File or built-in.
+    /// Path of a file, or name of a built-in volume.
     pub source: Option<PathBuf>,
-    /// How to read it.
+    /// Options for reading the volume.
     pub load: crate::data::load::LoadOptions,
-    /// See `--session`.
+    /// Session to continue, from `--session`.
     pub session: Option<PathBuf>,
-    /// See `--volume`.
+    /// Volume of a look, from `--volume`.
     pub volume: Option<PathBuf>,
-    /// See `--trust-paths`.
+    /// True if recorded paths of volumes are trusted, from `--trust-paths`.
     pub trust_paths: bool,
 }
 
-/// What is done when the process is told to end: the window's look is kept.
+/// Actions on termination signals: the window's look is saved.
 #[cfg(feature = "window")]
 const LAST_ACTS: &[fn()] = &[crate::app::end_in_a_hurry];
 #[cfg(not(feature = "window"))]
@@ -124,7 +124,7 @@ pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> 
                 warn_lines(text.trim_end());
                 return 2;
             }
-            // Help and version are no errors.
+            // Help and version are not errors.
             return exit_code(print_line(text.trim_end()));
         }
     };
@@ -144,7 +144,7 @@ pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> 
     exit_code(result)
 }
 
-/// The exit code of a command that has ended, after a word about what went wrong.
+/// Returns the exit code of a finished command, and prints its error message.
 fn exit_code(result: Result<(), CliError>) -> u8 {
     match result {
         Ok(()) => 0,

@@ -1,4 +1,4 @@
-//! What commands write: never in place of what they read, nor of one another; and what they print.
+//! Output of commands: protection of files against being overwritten, and printing to the standard streams.
 
 use std::collections::{HashMap, HashSet};
 use std::io::{ErrorKind, Write as _};
@@ -9,12 +9,12 @@ use super::process::is_output_closed;
 use crate::data::{one_line, without_controls};
 use crate::export::{Destination, is_ours};
 
-/// Refuses names under which a command would replace what it reads, or what else it writes, whatever they are called,
-/// or, unless that is wanted (`force`), files that this program has not made. What is no file is refused when it is
-/// written.
+/// Rejects output names under which a command would replace one of its inputs or another of its outputs, under any
+/// alias of the file, or, without `force`, a file that this program has not made. Names that are not regular files
+/// fail later, when they are written.
 ///
 /// # Errors
-/// Which file it is.
+/// Names the file that would be replaced.
 pub(super) fn keep_apart(inputs: &[&Path], outputs: &[&Path], force: bool) -> Result<(), CliError> {
     let inputs: HashMap<_, _> =
         inputs.iter().filter_map(|input| Some((Identity::of(input)?, *input))).collect();
@@ -38,18 +38,18 @@ pub(super) fn keep_apart(inputs: &[&Path], outputs: &[&Path], force: bool) -> Re
     Ok(())
 }
 
-/// What two names of one file have in common: there is one of both, or there would be.
+/// Identity of a file, equal for all of its names, whether it exists yet or not.
 #[derive(Debug, PartialEq, Eq, Hash)]
 enum Identity {
-    /// Device and number of a file that is there; also of hard links.
+    /// Device and inode of an existing file; equal for hard links.
     #[cfg(unix)]
     Found(u64, u64),
-    /// The name from the root.
+    /// Absolute path, with its folder canonicalised.
     Named(PathBuf),
 }
 
 impl Identity {
-    /// That of a file; none where its folder is not there, so that nothing can be written.
+    /// Returns the identity of a file; `None` if its folder does not exist, so that it cannot be written.
     fn of(path: &Path) -> Option<Self> {
         #[cfg(unix)]
         if let Ok(found) = std::fs::metadata(path) {
@@ -65,10 +65,10 @@ impl Identity {
     }
 }
 
-/// Where something goes: to a file of that name, or to standard output as a file of some ending.
+/// Opens a destination: a file with that name, or standard output with the format of an extension.
 ///
 /// # Errors
-/// When the system has no room for temporary files, or standard output is closed.
+/// When no temporary file can be created, or standard output is closed.
 pub(super) fn destination(name: &Path, ending: &str) -> Result<Destination, CliError> {
     let to = Destination::new(name, ending).map_err(CliError::Output)?;
     if to.is_standard_output() {
@@ -77,7 +77,7 @@ pub(super) fn destination(name: &Path, ending: &str) -> Result<Destination, CliE
     Ok(to)
 }
 
-/// Whether anything can be written to standard output.
+/// Checks that standard output can be written to.
 ///
 /// # Errors
 /// When it was closed before the program was started.
@@ -86,10 +86,10 @@ fn check_output() -> Result<(), CliError> {
     if is_output_closed() { Err(closed()) } else { Ok(()) }
 }
 
-/// What has been written goes to standard output if it is for that.
+/// Copies a finished output to standard output, if that is its destination.
 ///
 /// # Errors
-/// When what is behind it takes no more; a closed pipe is no error.
+/// When the reader of standard output accepts no more data; a closed pipe is not an error.
 pub(super) fn hand_over(to: Destination) -> Result<(), CliError> {
     match to.hand_over() {
         Err(err) if err.kind() != ErrorKind::BrokenPipe => Err(CliError::Output(err)),
@@ -97,18 +97,18 @@ pub(super) fn hand_over(to: Destination) -> Result<(), CliError> {
     }
 }
 
-/// As [`hand_over`]; what is in a file is said.
+/// Completes an output like [`hand_over`], and prints the name of a written file.
 ///
 /// # Errors
-/// As [`hand_over`].
+/// Under the conditions of [`hand_over`].
 pub(super) fn finish(to: Destination) -> Result<(), CliError> {
     if to.is_standard_output() { hand_over(to) } else { print_line(&to.path().display().to_string()) }
 }
 
-/// Prints a line to standard output; a closed pipe (`| head`) is no error.
+/// Prints a line to standard output; a closed pipe (`| head`) is not an error.
 ///
 /// # Errors
-/// When what is behind it takes no more.
+/// When the reader of standard output accepts no more data.
 pub(super) fn print_line(text: &str) -> Result<(), CliError> {
     check_output()?;
     let mut out = std::io::stdout();
@@ -118,18 +118,18 @@ pub(super) fn print_line(text: &str) -> Result<(), CliError> {
     }
 }
 
-/// Prints a message to standard error, on one line whatever is in it.
+/// Prints a message to standard error, on a single line whatever it contains.
 pub(super) fn warn_line(text: &str) {
-    // Nothing can be done when it is closed.
+    // A closed standard error cannot be reported anywhere.
     writeln!(std::io::stderr(), "{}", one_line(text)).ok();
 }
 
-/// Prints lines to standard error: what is said of wrong arguments.
+/// Prints several lines to standard error: the explanation of invalid arguments.
 pub(super) fn warn_lines(text: &str) {
     writeln!(std::io::stderr(), "{}", without_controls(text)).ok();
 }
 
-/// Says that pictures show nothing of a volume, and what helps.
+/// Warns that pictures show nothing of a volume, and suggests remedies.
 pub(super) fn warn_of_nothing() {
     warn_line(
         "warning: nothing of the volume is visible; --set range=full, another --preset or none, another --look, a larger \

@@ -1,4 +1,4 @@
-//! `chiaroscuro render`.
+//! Command `chiaroscuro render`: renders one picture to a file.
 
 use std::path::PathBuf;
 
@@ -32,7 +32,7 @@ pub(super) struct RenderArgs {
     progress: bool,
 }
 
-/// Renders one picture.
+/// Renders one picture, and a report if requested.
 pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     let say = |text: &str| {
         if args.progress {
@@ -57,7 +57,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     say("rendering");
     let mut report = None;
     if args.report.is_some() {
-        // It measures a whole picture, light volumes included, not what the balance left over.
+        // The report measures a whole picture including light volumes, so the renderer starts without caches.
         renderer = Renderer::new(&context)?;
         let options = RenderOptions { timed: true, ..RenderOptions::default() };
         let picture = renderer.render(&loaded, &settings, shot.size, &options)?;
@@ -109,7 +109,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     if bands.is_empty() {
         warn_of_nothing();
     }
-    // A report without its picture would mislead.
+    // A report without its picture would be misleading, so it is written last.
     let is_told = report_to.as_ref().is_some_and(Destination::is_standard_output);
     if let Some((to, report)) = report_to.zip(report) {
         write_atomically(to.path(), format!("{:#}\n", tells_maker(report)).as_bytes())?;

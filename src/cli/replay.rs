@@ -1,4 +1,4 @@
-//! `chiaroscuro replay`: makes a picture again from what it carries, and compares.
+//! Command `chiaroscuro replay`: reproduces a picture from its embedded record, and compares the two.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ use crate::export::{Rows, check_picture, marks, picture_size, read_picture, read
 use crate::gpu::{Distance, Renderer};
 use crate::model::{PresetError, Record, Settings, VolumePlace, VolumeRecord};
 
-/// Characters of a path in a message.
+/// Maximum length of a path in a message, in characters.
 const LONGEST_PATH: usize = 4096;
 
 /// Arguments of `replay`.
@@ -39,7 +39,8 @@ pub(super) struct ReplayArgs {
     load: LoadArgs,
 }
 
-/// The volume of a picture, if it may be opened: a picture comes from anywhere, and could name any file.
+/// Returns the volume of a picture, if it may be opened: pictures come from untrusted sources and could name any
+/// file.
 fn source_of(args: &ReplayArgs, stated: &VolumeRecord) -> Result<PathBuf, CliError> {
     let refused = |why: &'static str, help: &'static str| {
         let volume = plain(&stated.source, LONGEST_PATH);
@@ -56,7 +57,7 @@ fn source_of(args: &ReplayArgs, stated: &VolumeRecord) -> Result<PathBuf, CliErr
     }
 }
 
-/// Renders the picture again and says how far the two are apart.
+/// Renders the picture again and prints the distance of both.
 pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
     let path = args.picture.display().to_string();
     let unusable = |why: String| CliError::Replay { path: path.clone(), why };
@@ -93,7 +94,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
         warn_line(&format!("made by version {}, again by {}", how.version, env!("CARGO_PKG_VERSION")));
     }
     let shot = how.shot.within_limits();
-    // Before any of it is decoded.
+    // Checked before the picture is decoded.
     let size = picture_size(&args.picture)?;
     if size != shot.size {
         return Err(unusable(format!("it is {size:?} pixels and not {:?}", shot.size)));

@@ -1,4 +1,4 @@
-//! `chiaroscuro turntable`: the camera or a light goes once around the volume.
+//! Command `chiaroscuro turntable`: an animation in which the camera or a light goes once around the volume.
 
 use std::path::{Path, PathBuf};
 
@@ -39,7 +39,7 @@ pub(super) struct TurntableArgs {
     progress: bool,
 }
 
-/// Renders one turn.
+/// Renders the frames of one turn.
 pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
     let mut written = vec![args.output.clone()];
     if AnimationFormat::of_path(&args.output) == AnimationFormat::Folder {

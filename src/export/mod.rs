@@ -1,7 +1,7 @@
-//! Files that go out: pictures, pictures that move, volumes, and anything that must be whole or not there at all.
+//! Export of files: pictures, animations, volumes, and atomic writing of any other file.
 //!
-//! Pictures come in bands of rows from the top, so that none need be in memory as a whole. Knows neither the
-//! renderer nor the window.
+//! Pictures are written in bands of rows from the top, so that they need not be in memory as a whole. Independent of
+//! the renderer and the window.
 
 mod animation;
 mod error;

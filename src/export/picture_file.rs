@@ -1,4 +1,4 @@
-//! Pictures of any size as files, from bands of rows.
+//! Picture files of any size, written from bands of rows.
 
 use std::path::Path;
 
@@ -6,23 +6,23 @@ use super::animation::carried;
 use super::{ExportError, ReadPictureError, Rows, check_ending, exr_file, png_file};
 use crate::model::{Depth, ImageSpec};
 
-/// Kinds of picture files.
+/// File format of a still picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PictureFormat {
-    /// Display colours, 8 or 16 bits, straight alpha.
+    /// Display colours in 8 or 16 bits, with straight alpha.
     Png,
-    /// Linear light, 16-bit floats, premultiplied.
+    /// Linear light in 16-bit floats, with premultiplied alpha.
     Exr,
 }
 
 impl PictureFormat {
-    /// What a name stands for: EXR where it ends so, else PNG.
+    /// Returns the format of a file name: EXR for `.exr`, otherwise PNG.
     pub fn of_path(path: &Path) -> Self {
         let is_exr = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
         if is_exr { Self::Exr } else { Self::Png }
     }
 
-    /// The depth in which a file of this kind is written when its display colours would have `wanted`.
+    /// Returns the depth in which this format stores a picture; PNG uses `wanted`, unless that is linear.
     pub fn depth(self, wanted: Depth) -> Depth {
         match (self, wanted) {
             (Self::Exr, _) => Depth::Linear,
@@ -32,13 +32,13 @@ impl PictureFormat {
     }
 }
 
-/// Writes a picture whose rows come band by band from the top, whole or not at all.
+/// Writes a picture atomically, from bands of rows from the top.
 ///
-/// It carries a record ([`crate::model::Record`]) as text. How its numbers are written follows from the name
-/// and from [`ImageSpec::depth`], which must fit ([`PictureFormat::depth`]).
+/// It embeds a record ([`crate::model::Record`]) as text. The encoding follows from the file name and from
+/// [`ImageSpec::depth`], which must be supported by the format ([`PictureFormat::depth`]).
 ///
 /// # Errors
-/// What `rows` says; when the kind of file does not fit the depth, or the disk refuses.
+/// Returns the errors of `rows`; also when the format does not support the depth, or the file cannot be written.
 pub fn write_picture<E: From<ExportError>>(
     path: &Path,
     shot: &ImageSpec,
@@ -52,10 +52,10 @@ pub fn write_picture<E: From<ExportError>>(
     }
 }
 
-/// Says before anything is drawn whether a picture cannot be written under a name.
+/// Checks before rendering that a picture can be written under a name.
 ///
 /// # Errors
-/// When the name stands for another kind of file, or that kind does not fit the depth.
+/// When the extension belongs to another format, or the format does not support the depth.
 pub fn check_picture(path: &Path, shot: &ImageSpec) -> Result<(), ExportError> {
     check_ending(path, &["png", "exr"], "pictures are written as .png or .exr, and the name says as which")?;
     let format = PictureFormat::of_path(path);
@@ -69,10 +69,10 @@ pub fn check_picture(path: &Path, shot: &ImageSpec) -> Result<(), ExportError> {
     Ok(())
 }
 
-/// A picture's columns and rows: what its header says, and nothing is decoded.
+/// Returns the columns and rows from a picture's header, without decoding it.
 ///
 /// # Errors
-/// When the file cannot be read, is no picture, or claims more pixels than any that this program makes.
+/// When the file cannot be read, is not a picture, or claims more pixels than this program ever writes.
 pub fn picture_size(path: &Path) -> Result<[u32; 2], ReadPictureError> {
     match PictureFormat::of_path(path) {
         PictureFormat::Png => png_file::size(path),
@@ -80,10 +80,10 @@ pub fn picture_size(path: &Path) -> Result<[u32; 2], ReadPictureError> {
     }
 }
 
-/// A picture's columns and rows, and all its rows: bytes of 8-bit PNG, else floats.
+/// Reads a picture: its columns and rows, and all rows as bytes (8-bit PNG) or floats.
 ///
 /// # Errors
-/// When the file cannot be read or is no picture.
+/// When the file cannot be read or is not a picture.
 pub fn read_picture(path: &Path) -> Result<([u32; 2], Rows), ReadPictureError> {
     match PictureFormat::of_path(path) {
         PictureFormat::Png => png_file::read(path),
@@ -91,16 +91,16 @@ pub fn read_picture(path: &Path) -> Result<([u32; 2], Rows), ReadPictureError> {
     }
 }
 
-/// Whether a file may carry a record, by its name: a picture, or one that moves.
+/// Returns true if a file may embed a record, by its extension: pictures and animations.
 pub fn may_carry_record(path: &Path) -> bool {
     let is_one = |ending: &str| path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending));
     ["png", "exr", "gif", "mp4"].into_iter().any(is_one)
 }
 
-/// The record that a picture file carries, or one that moves, if it does.
+/// Reads the record embedded in a picture or animation, if there is one.
 ///
 /// # Errors
-/// When the file cannot be read or is no picture.
+/// When the file cannot be read or is not a picture.
 pub fn read_record(path: &Path) -> Result<Option<String>, ReadPictureError> {
     if let Some(found) = carried::read_record(path) {
         return found;
@@ -171,7 +171,7 @@ mod tests {
             };
             let err = write_picture(&path, &shot, None, &mut next).unwrap_err();
             assert!(err.to_string().starts_with("stop"), "{name}: {err}");
-            // Rows that end too early are no picture, either.
+            // Too few rows are an error as well.
             let mut next = || Ok::<_, ExportError>(None);
             assert!(write_picture(&path, &shot, None, &mut next).is_err(), "{name}");
         }

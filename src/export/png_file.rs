@@ -1,4 +1,4 @@
-//! PNG: display colours in 8 or 16 bits, with a record as text.
+//! PNG files: display colours in 8 or 16 bits, with a record as text.
 
 use std::io::{BufReader, BufWriter, Write as _};
 use std::path::Path;
@@ -8,15 +8,15 @@ use super::rows::{RECORD, word};
 use super::{ExportError, ReadPictureError, Rows};
 use crate::model::{Depth, ImageSpec, MAX_EDGE, MAX_LOOK_BYTES, made_by};
 
-/// Most bytes that are read of all that stands before a picture's pixels, other programs' texts and colour profiles
-/// among it, as they are stored: ten times what cameras write.
+/// Maximum number of bytes read before a picture's pixels, including texts and colour profiles of other programs, as
+/// stored: ten times what cameras write.
 const MOST_BEFORE: usize = 16 << 20;
 
-/// Writes a picture of sRGB bytes, RGBA row by row, as PNG: RGB, or RGBA with straight alpha when
-/// it is transparent. It carries a record ([`crate::model::Record`]) as text.
+/// Writes a picture of sRGB bytes, RGBA row by row, as PNG: RGB, or RGBA with straight alpha if it is transparent. It
+/// embeds a record ([`crate::model::Record`]) as text.
 ///
 /// # Errors
-/// As [`write_atomically`].
+/// Under the conditions of [`write_atomically`].
 pub fn export_png(
     size: [u32; 2],
     shown: &[u8],
@@ -33,10 +33,10 @@ pub fn export_png(
     write_atomically(path, &bytes)
 }
 
-/// Bytes of colours as PNG, with a record if there is one.
+/// Encodes bytes of colours as PNG, with a record if there is one.
 ///
 /// # Errors
-/// When there are more or fewer bytes than pixels.
+/// When the number of bytes does not match the pixels.
 pub fn encode_png(
     [width, height]: [u32; 2],
     color: png::ColorType,
@@ -57,12 +57,12 @@ pub fn encode_png(
     Ok(png)
 }
 
-/// Says in a file who made it.
+/// Adds the name of this program to the file's metadata.
 pub(super) fn mark<W: std::io::Write>(encoder: &mut png::Encoder<'_, W>) -> Result<(), png::EncodingError> {
     encoder.add_text_chunk("Software".to_owned(), made_by())
 }
 
-/// Writes a picture as its rows come.
+/// Writes a picture from bands of rows.
 pub(super) fn write<E: From<ExportError>>(
     path: &Path,
     shot: &ImageSpec,
@@ -96,30 +96,30 @@ pub(super) fn write<E: From<ExportError>>(
     Ok(place(file, path)?)
 }
 
-/// The colours of a picture without its alpha.
+/// Returns the colours of a picture without alpha.
 pub(super) fn rgb(shown: &[u8]) -> Vec<u8> {
     shown.chunks_exact(4).flat_map(|texel| [texel[0], texel[1], texel[2]]).collect()
 }
 
-/// Numbers from 0 to 1 in 16 bits, high byte first, with alpha or without.
+/// Encodes values from 0 to 1 as 16-bit numbers, big-endian, with or without alpha.
 fn words(shown: &[f32], alpha: bool) -> Vec<u8> {
     let kept = if alpha { 4 } else { 3 };
     let texels = shown.chunks_exact(4);
     texels.flat_map(|texel| texel[..kept].iter().flat_map(|&value| word(value).to_be_bytes())).collect()
 }
 
-/// Reads a PNG file.
+/// Opens a PNG file for decoding.
 fn reader(path: &Path) -> Result<image::ImageReader<BufReader<std::fs::File>>, ReadPictureError> {
     Ok(image::ImageReader::with_format(BufReader::new(open_regular(path)?), image::ImageFormat::Png))
 }
 
-/// Columns and rows of a PNG file.
+/// Reads the columns and rows of a PNG file.
 pub(super) fn size(path: &Path) -> Result<[u32; 2], ReadPictureError> {
     let size = reader(path)?.into_dimensions().map_err(|err| ReadPictureError::new(path, &err))?;
     sizes_of_ours(path, size.into())
 }
 
-/// Columns and rows, unless they are more than those of any picture of this program.
+/// Rejects sizes beyond those of any picture that this program writes.
 pub(super) fn sizes_of_ours(path: &Path, size: [u32; 2]) -> Result<[u32; 2], ReadPictureError> {
     let [width, height] = size;
     if size.iter().all(|edge| (1..=MAX_EDGE).contains(edge)) {
@@ -129,13 +129,13 @@ pub(super) fn sizes_of_ours(path: &Path, size: [u32; 2]) -> Result<[u32; 2], Rea
     Err(ReadPictureError::new(path, &why))
 }
 
-/// All of a PNG file.
+/// Reads the pixels of a PNG file.
 pub(super) fn read(path: &Path) -> Result<([u32; 2], Rows), ReadPictureError> {
     let failed = |why: &dyn std::fmt::Display| ReadPictureError::new(path, why);
     let size = size(path)?;
     let [width, height] = size;
     let mut reader = reader(path)?;
-    // As much as our own largest pictures need, twice: not what the file makes of its text or colours.
+    // Twice the memory of the decoded pixels: limits the memory for texts and colour profiles in the file.
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(16 * u64::from(width) * u64::from(height) + (1 << 20));
     reader.limits(limits);
@@ -150,7 +150,7 @@ pub(super) fn read(path: &Path) -> Result<([u32; 2], Rows), ReadPictureError> {
     Ok((size, rows))
 }
 
-/// The record in a PNG file, if there is one.
+/// Reads the record in a PNG file, if there is one.
 pub(super) fn read_record(path: &Path) -> Result<Option<String>, ReadPictureError> {
     let failed = |why: &dyn std::fmt::Display| ReadPictureError::new(path, why);
     let file = open_regular(path)?;
@@ -159,7 +159,7 @@ pub(super) fn read_record(path: &Path) -> Result<Option<String>, ReadPictureErro
     let reader = decoder.read_info().map_err(|err| failed(&err))?;
     let found = reader.info().utf8_text.iter().find(|text| text.keyword == RECORD);
     let Some(mut text) = found.cloned() else { return Ok(None) };
-    // Inflating stops there, whatever it would come to.
+    // Decompression stops at this length.
     text.decompress_text_with_limit(MAX_LOOK_BYTES)
         .map_err(|err| failed(&format!("what it says of how it was made cannot be read: {err}")))?;
     text.get_text().map(Some).map_err(|err| failed(&err))
@@ -213,7 +213,7 @@ mod tests {
         for transparent in [false, true] {
             let shot = ImageSpec { depth: Depth::Sixteen, transparent, ..ImageSpec::new([5, 4]) };
             let shown: Vec<f32> = (0..80).map(|i| value(i * 3)).collect();
-            // A band of three rows and one of one.
+            // Bands of three rows and of one row.
             let mut bands = vec![shown[60..].to_vec(), shown[..60].to_vec()];
             let mut next = || Ok::<_, ExportError>(bands.pop().map(Rows::Floats));
             super::super::write_picture(&path, &shot, None, &mut next).unwrap();

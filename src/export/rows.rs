@@ -1,26 +1,26 @@
-//! What pictures consist of before they are files.
+//! Bands of rows, in which pictures are passed to the writers of files.
 
 use crate::model::{Depth, ImageSpec};
 
-/// Under which name a picture carries its record.
+/// Key of the embedded record in a picture's metadata.
 pub(super) const RECORD: &str = "chiaroscuro";
 
-/// A number from 0 to 1 in 16 bits.
+/// Quantises a value from 0 to 1 to 16 bits.
 pub(super) fn word(value: f32) -> u16 {
     (value.clamp(0.0, 1.0) * 65535.0 + 0.5) as u16
 }
 
-/// Rows of a picture, RGBA: display colours with straight alpha, or linear and premultiplied light.
+/// Rows of a picture as RGBA: display colours with straight alpha, or linear light with premultiplied alpha.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Rows {
-    /// sRGB bytes.
+    /// sRGB bytes, four per pixel.
     Bytes(Vec<u8>),
-    /// 0 … 1, or light.
+    /// Display colours from 0 to 1, or linear light; four per pixel.
     Floats(Vec<f32>),
 }
 
 impl Rows {
-    /// How many rows of a picture they are.
+    /// Number of rows of the given picture.
     pub fn count(&self, shot: &ImageSpec) -> usize {
         let numbers = match self {
             Self::Bytes(shown) => shown.len(),
@@ -29,7 +29,7 @@ impl Rows {
         numbers / (shot.size[0] as usize * 4).max(1)
     }
 
-    /// What a file of them gives back.
+    /// Returns the values that reading a file with these rows gives back.
     #[must_use]
     pub fn as_written(self, shot: &ImageSpec) -> Self {
         match self {
@@ -57,7 +57,7 @@ impl Rows {
         }
     }
 
-    /// All of them where 1 is white.
+    /// Returns all values, scaled so that 1 is white.
     pub fn values(&self) -> Vec<f32> {
         match self {
             Self::Bytes(shown) => shown.iter().map(|&byte| f32::from(byte) / 255.0).collect(),

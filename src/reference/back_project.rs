@@ -1,5 +1,5 @@
-//! The reverse splat: sheets of light into the voxels of the light volume (P eq. 10, figure 3).
-//! Stored is the attenuation, Σ D·h / Σ h, not the light.
+//! Back-projection (reverse splat): sheets of light into the voxels of the light volume (P eq. 10, figure 3). The
+//! attenuation Σ D·h / Σ h is stored, not the light.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -12,30 +12,30 @@ use super::{Fault, Reference, Weights};
 use crate::model::{Kernel, ReverseKernel, SceneLight, ShadowAlgorithm};
 use crate::plan::SheetPosition;
 
-/// How much of a light arrives where: the paper's attenuation volume.
+/// Attenuation volume of a light, as in the paper: the share that arrives in each voxel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Attenuation {
-    /// Light voxels along x, y, z.
+    /// Number of light voxels along x, y, z.
     pub dims: [usize; 3],
     /// Voxels per light voxel along an axis.
     pub divisor: usize,
-    /// One value per light voxel, x fastest; 1 is unattenuated.
+    /// One transmittance per light voxel, x fastest; 1 is unattenuated.
     pub values: Vec<f64>,
 }
 
 impl Attenuation {
-    /// The trilinearly interpolated value at an index-space point.
+    /// Returns the trilinearly interpolated value at an index-space point.
     pub fn at(&self, point: DVec3) -> f64 {
         trilinear(self.dims, &self.values, (point + 0.5) / self.divisor as f64 - 0.5)
     }
 
-    /// Unattenuated everywhere.
+    /// Creates a volume that is unattenuated everywhere.
     pub(super) fn unlit(grid: [usize; 3], divisor: usize) -> Self {
         let dims = grid.map(|n| n.div_ceil(divisor));
         Self { dims, divisor, values: vec![1.0; dims.iter().product()] }
     }
 
-    /// The index-space point in the middle of a light voxel.
+    /// Returns the index-space point in the middle of a light voxel.
     pub(super) fn point_of(&self, voxel: usize) -> DVec3 {
         let [nx, ny, _] = self.dims;
         let texel = [voxel % nx, voxel / nx % ny, voxel / (nx * ny)];
@@ -44,7 +44,7 @@ impl Attenuation {
 }
 
 impl Reference<'_> {
-    /// The attenuation volume of light `index`: the mean of those of its points.
+    /// Computes the attenuation volume of light `index`: the mean over its points.
     pub fn attenuation(&self, index: usize) -> Attenuation {
         let resolution = self.light_resolution(index);
         let of_point = |point: &SceneLight| match self.settings.shadows.algorithm {
@@ -62,14 +62,14 @@ impl Reference<'_> {
         mean
     }
 
-    /// The attenuation volumes of all lights that have one.
+    /// Computes the attenuation volumes of all lights that have one.
     pub fn attenuations(&self) -> Vec<Option<Attenuation>> {
         let lights = &self.settings.lights;
         (0..lights.len()).map(|index| self.casts(index).then(|| self.attenuation(index))).collect()
     }
 
-    /// Splats the sheets of a point light back into its attenuation volume. What several views claim, the
-    /// last of them gets; what none does is unattenuated.
+    /// Splats the sheets of a point light back into its attenuation volume. Voxels covered by several views get the
+    /// value of the last; voxels covered by none are unattenuated.
     pub fn back_project(&self, sheets: &[ViewSheets]) -> Attenuation {
         self.back_project_to(sheets, self.settings.shadows.resolution.divisor())
     }
@@ -93,12 +93,12 @@ impl Reference<'_> {
         volume
     }
 
-    /// Where a view's sheets see an index-space point, if the view owns it.
+    /// Returns the position of an index-space point on a view's sheets, if the view covers it.
     fn position(&self, sheets: &ViewSheets, point: DVec3) -> Option<SheetPosition> {
         sheets.view.position(self.scene.scene_from_index.transform_point3(point))
     }
 
-    /// The GPU's form: one voxel takes from all pixels around it.
+    /// Gathers one voxel from all pixels around it, as the GPU does.
     fn gathered(&self, sheets: &ViewSheets, point: DVec3) -> Option<f64> {
         let at = self.position(sheets, point)?;
         if self.settings.shadows.first_touch {
@@ -112,7 +112,7 @@ impl Reference<'_> {
         let [columns, rows] = sheets.view.frame.size;
         let across = taps(&profile, at.pixel.x, at.kernel_pixels, columns as usize, &[0.0]);
         let down = taps(&profile, at.pixel.y, at.kernel_pixels, rows as usize, &[0.0]);
-        // Across the slabs the kernel is averaged over each slab: the paper's h̄.
+        // Across slabs, the kernel is averaged over each slab: the paper's h̄.
         let points = self.settings.shadows.quadrature.offsets();
         let deep = taps(&profile, at.slab, at.kernel_slabs, sheets.deposits.len(), points);
         let mut sums = Sums::default();
@@ -126,9 +126,9 @@ impl Reference<'_> {
         Some(sums.normalised(self.options.fault))
     }
 
-    /// The paper's form: sheet after sheet is splatted into the light volume, each pixel with the
-    /// slice of the voxel's kernel that lies in the sheet's slab; a voxel is divided by its sum of
-    /// weights as soon as the sheets have passed it (the rolling normalisation).
+    /// Scatters sheet after sheet into the light volume, as the paper does, each pixel with the slice of the voxel's
+    /// kernel that lies in the sheet's slab; a voxel is divided by its sum of weights as soon as the sheets have
+    /// passed it (the rolling normalisation).
     fn scatter(&self, sheets: &ViewSheets, volume: &Attenuation) -> Vec<Option<f64>> {
         let shadows = &self.settings.shadows;
         let profile = self.profile(shadows.kernel);
@@ -138,7 +138,7 @@ impl Reference<'_> {
         for k in 0..sheets.view.frame.slab_count {
             // The kernel is as wide as a light voxel, or as a pixel where that is wider.
             let slice = SlabSlice::new(&sheets.view.frame, k, &profile, points, volume.divisor as f64);
-            // Near a light pixels are small and many: each counts for as much of the grid as it covers.
+            // Near a light, pixels are small and many: each is weighted by the part of the grid that it covers.
             let share = points.map_or(1.0, |_| slice.voxels_per_pixel());
             light.par_iter_mut().zip(&mut done).enumerate().for_each(|(voxel, (sums, done))| {
                 let centre = volume.point_of(voxel);
@@ -165,7 +165,7 @@ impl Reference<'_> {
     }
 }
 
-/// Σ D·h (the light volume) and Σ h (the weight volume) of one voxel.
+/// Sums of one voxel: Σ D·h (the light volume) and Σ h (the weight volume).
 #[derive(Debug, Clone, Copy, Default)]
 struct Sums {
     light: f64,
@@ -189,8 +189,8 @@ impl Sums {
     }
 }
 
-/// The integers 0 … count − 1 under a kernel of some width around `centre`, with its weights: the
-/// mean of the kernel at `points` around each.
+/// Returns the integers 0 … count − 1 under a kernel of a given width around `centre`, with weights: the mean of the
+/// kernel at `points` around each.
 fn taps(profile: &Profile, centre: f64, width: f64, count: usize, points: &[f64]) -> Vec<(usize, f64)> {
     let reach = profile.reach() * width + points.iter().copied().fold(0.0, f64::max);
     let first = (centre - reach).ceil().max(0.0) as usize;
@@ -202,8 +202,8 @@ fn taps(profile: &Profile, centre: f64, width: f64, count: usize, points: &[f64]
     (first..end as usize).map(|tap| (tap, weight(tap))).collect()
 }
 
-/// P §4: a voxel takes the light of the first sheet that touches it, l = ⌈z − 2·width⌉, and needs
-/// no weights. Bilinear between the sheet's pixels.
+/// Returns the deposit of the first sheet that touches a voxel (P §4), l = ⌈z − 2·width⌉, which needs no weights.
+/// Bilinear between the sheet's pixels.
 fn first_touch(sheets: &ViewSheets, at: &SheetPosition) -> f64 {
     let last = (sheets.deposits.len() - 1) as f64;
     let k = (at.slab - 2.0 * at.kernel_slabs).ceil().clamp(0.0, last) as usize;

@@ -1,4 +1,4 @@
-//! The floor: rays from the eye that meet it, and rays from there to the lights.
+//! Floor pass: rays from the eye that meet the floor, and rays from there to the lights.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -9,7 +9,7 @@ use crate::model::{Projection, SceneLight, ShadowAlgorithm};
 use crate::plan::SweepFrame;
 
 impl Reference<'_> {
-    /// The floor without what is in front of it: linear, premultiplied RGBA, row by row from the top left.
+    /// Renders the floor without what is in front of it: linear, premultiplied RGBA, row by row from the top left.
     pub fn floor(&self, size: [u32; 2]) -> Vec<[f64; 4]> {
         let settings = self.settings;
         let shadows = &settings.shadows;
@@ -45,7 +45,7 @@ impl Reference<'_> {
         let (floor, shading) = (&self.settings.floor, &self.settings.shading);
         let up = self.settings.camera.up.direction();
         let towards = direction.dot(up);
-        // An orthographic eye is nowhere: its rays begin behind everything.
+        // An orthographic eye has no position: its rays begin infinitely far away.
         let along = (floor.height - eye.dot(up)) / towards;
         let is_in_front = along > 0.0 || self.settings.camera.projection == Projection::Orthographic;
         if towards >= 0.0 || !is_in_front {

@@ -1,10 +1,8 @@
-//! The paper's weights: footprints, that is, kernel slices integrated over a slab (h̄ of P eq. 9
-//! and 10), one voxel at a time.
+//! Footprints, the paper's weights: kernel slices integrated over a slab (h̄ of P eq. 9 and 10), one voxel at a time.
 //!
-//! Where the paper looks them up in tables, here every value is the integral itself along the
-//! pixel's ray, so that sheared and perspective footprints need no approximation:
-//! h̄ = 1/Δs ∫ over the slab of K((p(z) − v)/s) / s³ dz, with s ≥ 1 the perspective stretch and
-//! s⁻³ its amplitude (P §4, Fourier scaling). The kernel is isotropic in index space.
+//! Where the paper looks them up in tables, every value is integrated here along the pixel's ray, so that sheared and
+//! perspective footprints need no approximation: h̄ = 1/Δs ∫ over the slab of K((p(z) − v)/s) / s³ dz, with s ≥ 1 the
+//! perspective stretch and s⁻³ its amplitude (P §4, Fourier scaling). The kernel is isotropic in index space.
 
 use std::ops::RangeInclusive;
 
@@ -15,10 +13,10 @@ use super::kernel::{Profile, quadrature_nodes};
 use crate::model::{Kernel, Quadrature};
 use crate::plan::SheetFrame;
 
-/// Turns index-space points into positions on sheets: the inverse of [`SheetFrame::point`].
+/// Projection of index-space points onto sheets: the inverse of [`SheetFrame::point`].
 ///
-/// With w = 1 + z · spread, point(i, j, z) = origin + w·i · right + w·j · down + z · forward: linear
-/// in (w·i, w·j, z).
+/// With w = 1 + z · spread, point(i, j, z) = origin + w·i · right + w·j · down + z · forward: linear in (w·i, w·j,
+/// z).
 #[derive(Debug, Clone, Copy)]
 struct Projector {
     sheets_from_index: DMat3,
@@ -32,12 +30,12 @@ impl Projector {
         Self { sheets_from_index: index_from_sheets.inverse(), origin: frame.origin.base }
     }
 
-    /// (w·i, w·j, z) of an index-space point.
+    /// Returns (w·i, w·j, z) of an index-space point.
     fn locate(&self, point: DVec3) -> DVec3 {
         self.sheets_from_index * (point - self.origin)
     }
 
-    /// Half the extents, in (w·i, w·j, z), of a cube with half-edge `reach` in index space.
+    /// Returns half the extents, in (w·i, w·j, z), of a cube with half-edge `reach` in index space.
     fn half_extents(&self, reach: f64) -> DVec3 {
         let rows = self.sheets_from_index.transpose();
         DVec3::new(
@@ -48,11 +46,11 @@ impl Projector {
     }
 }
 
-/// One slab of a stack, ready to say which pixels a voxel's footprint covers and how much.
+/// Slab of a stack, prepared for the footprints of voxels: covered pixels and weights.
 pub(super) struct SlabSlice<'f> {
     frame: &'f SheetFrame,
     projector: Projector,
-    /// How much wider the kernel is here than in index space.
+    /// Width of the kernel here, relative to index space.
     stretch: f64,
     /// Half the extents of a kernel's box in (w·i, w·j, z).
     half: DVec3,
@@ -60,21 +58,21 @@ pub(super) struct SlabSlice<'f> {
     averaging: Averaging,
 }
 
-/// How the kernel is averaged over the slab.
+/// Method by which a kernel is averaged over the slab.
 #[derive(Debug, Clone, Copy)]
 enum Averaging {
-    /// The integral along the ray.
+    /// Integral along the ray.
     Integral,
-    /// The mean of one or two points.
+    /// Mean over one or two points.
     Points(Quadrature),
-    /// The integral of a round Gaussian of that standard deviation, cut at a cylinder along the ray,
-    /// two voxels (times `width`) in radius and half length.
+    /// Integral of a round Gaussian with this standard deviation, cut at a cylinder along the ray, two voxels (times
+    /// `width`) in radius and half length.
     Round { sigma: f64, width: f64 },
 }
 
 impl<'f> SlabSlice<'f> {
-    /// Slab `k`, for a kernel that is never narrower than `least_stretch` voxels per voxel: integrated
-    /// over the slab, or as the scattering engine does with these `points`.
+    /// Prepares slab `k`, for a kernel that is never narrower than `least_stretch` voxels: integrated over the slab,
+    /// or evaluated at `points` as in the scattering engine.
     pub(super) fn new(
         frame: &'f SheetFrame,
         k: u32,
@@ -85,7 +83,7 @@ impl<'f> SlabSlice<'f> {
         let (averaging, reach) = match (points, profile.kernel) {
             (None, _) => (Averaging::Integral, profile.reach()),
             (Some(_), Kernel::Gaussian { sigma }) => {
-                // The cylinder fits into a ball.
+                // Bounding ball of the cylinder.
                 let round = Averaging::Round { sigma, width: profile.width };
                 (round, profile.reach() * std::f64::consts::SQRT_2)
             }
@@ -97,8 +95,8 @@ impl<'f> SlabSlice<'f> {
         Self { frame, projector, stretch, half: projector.half_extents(reach * stretch), middle, averaging }
     }
 
-    /// The pixels (columns, rows) that the kernel's slice around `centre` can touch; `None` where
-    /// the kernel does not overlap the slab.
+    /// Returns the pixels (columns, rows) that the kernel's slice around `centre` can touch; `None` if the kernel
+    /// does not overlap the slab.
     pub(super) fn pixels_under(&self, centre: DVec3) -> Option<[RangeInclusive<u32>; 2]> {
         let at = self.projector.locate(centre);
         if (at.z - self.middle).abs() >= self.half.z + self.frame.slab / 2.0 {
@@ -116,18 +114,18 @@ impl<'f> SlabSlice<'f> {
         Some([range(0)?, range(1)?])
     }
 
-    /// Whether the whole slab lies behind the kernel around `centre`.
+    /// Returns true if the whole slab lies behind the kernel around `centre`.
     pub(super) fn is_beyond(&self, centre: DVec3) -> bool {
         self.middle - self.projector.locate(centre).z >= self.half.z + self.frame.slab / 2.0
     }
 
-    /// The part of a voxel's volume that a pixel of this slab stands for.
+    /// Returns the volume in voxels that a pixel of this slab represents.
     pub(super) fn voxels_per_pixel(&self) -> f64 {
         let pitch = self.frame.pitch_at(self.middle) / self.frame.voxel_edge;
         pitch * pitch * self.frame.slab / self.frame.voxel_edge
     }
 
-    /// h̄: the mean over the slab, along pixel (i, j)'s ray, of the kernel around `centre`.
+    /// Returns h̄: the mean over the slab, along pixel (i, j)'s ray, of the kernel around `centre`.
     pub(super) fn mean_of(&self, kernel: impl Fn(f64) -> f64, centre: DVec3, i: u32, j: u32) -> f64 {
         let (i, j) = (f64::from(i), f64::from(j));
         let start = (self.frame.point(i, j, self.middle) - centre) / self.stretch;
@@ -135,7 +133,7 @@ impl<'f> SlabSlice<'f> {
         let product = |offset: f64| {
             let r = start + step * offset;
             let x = kernel(r.x);
-            // Most points lie outside the cube: no need to look at the other axes.
+            // Shortcut: most points are already outside the kernel along x.
             if x == 0.0 { 0.0 } else { x * kernel(r.y) * kernel(r.z) }
         };
         let mean = match self.averaging {
@@ -152,8 +150,8 @@ impl<'f> SlabSlice<'f> {
     }
 }
 
-/// The mean of a Gaussian of area 1 around the origin over the segment `start` ± `step`/2. It is a product:
-/// of the distance across the ray, and of the part of the kernel's length between the segment's ends.
+/// Returns the mean of a Gaussian of area 1 around the origin over the segment `start` ± `step`/2: the product of a
+/// function of the distance across the ray and the integral along the segment.
 fn round_mean(start: DVec3, step: DVec3, sigma: f64, width: f64) -> f64 {
     let (sigma, radius) = (sigma * width, 2.0 * width);
     let length = step.length();
@@ -174,7 +172,7 @@ fn round_mean(start: DVec3, step: DVec3, sigma: f64, width: f64) -> f64 {
     amplitude * (-squared / (2.0 * variance)).exp() * part * (far - near) / length
 }
 
-/// The sheet of slab `k`, row by row: Σ ρ(v) · h̄ over all voxels whose kernel overlaps it.
+/// Computes the sheet of slab `k`, row by row: Σ ρ(v) · h̄ over all voxels whose kernel overlaps it.
 pub(super) fn splat(
     field: &Field,
     frame: &SheetFrame,
@@ -189,7 +187,7 @@ pub(super) fn splat(
     let mut sheet = vec![0.0; width * frame.size[1] as usize];
     for (voxel, &density) in field.densities.iter().enumerate().filter(|&(_, &density)| density != 0.0) {
         let [x, y, z] = [voxel % nx, voxel / nx % ny, voxel / (nx * ny)].map(|c| c as f64);
-        // Sampling further on is the same as a voxel further back.
+        // Sampling with a shift equals moving the voxel the opposite way.
         let centre = DVec3::new(x, y, z) - shift;
         let Some([columns, rows]) = slice.pixels_under(centre) else {
             continue;

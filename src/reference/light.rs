@@ -1,5 +1,5 @@
-//! The march of light: sheets are composited front to back as seen from the light, and each keeps
-//! the transmittance that it will splat into the light volume (the product in P eq. 10).
+//! Light march: sheets are composited front to back as seen from the light, and each keeps the transmittance that it
+//! will splat into the light volume (the product in P eq. 10).
 
 use rayon::prelude::*;
 
@@ -8,31 +8,31 @@ use super::{Fault, Reference};
 use crate::model::{Deposit, Resolution, SceneLight, Shadows};
 use crate::plan::{LightView, light_views};
 
-/// What the sheets of one view of a light hold.
+/// Sheets of one view of a light.
 #[derive(Debug, Clone)]
 pub struct ViewSheets {
-    /// Where these sheets lie.
+    /// View that the sheets belong to.
     pub view: LightView,
-    /// D of every slab, front to back; each a sheet, row by row.
+    /// Deposits D of every slab, front to back; each a sheet, row by row.
     pub deposits: Vec<Vec<f64>>,
     /// Transmittance behind the last slab, row by row.
     pub transmittance: Vec<f64>,
 }
 
 impl ViewSheets {
-    /// D of slab `k` at pixel (i, j).
+    /// Returns D of slab `k` at pixel (i, j).
     pub fn deposit(&self, i: usize, j: usize, k: usize) -> f64 {
         self.deposits[k][i + self.view.frame.size[0] as usize * j]
     }
 }
 
 impl Reference<'_> {
-    /// The sheets of every view of light `index`, a point: P figure 3 up to the reverse splat.
+    /// Computes the sheets of every view of light `index`, a point light: P figure 3 up to the reverse splat.
     pub fn light_sheets(&self, index: usize) -> Vec<ViewSheets> {
         self.sheets_of(&self.light(index), self.light_resolution(index))
     }
 
-    /// The sheets of every view of a point light, for a volume of a resolution.
+    /// Computes the sheets of every view of a point light, for a volume of the given resolution.
     pub(super) fn sheets_of(&self, light: &SceneLight, resolution: Resolution) -> Vec<ViewSheets> {
         let shadows = Shadows { resolution, ..self.settings.shadows.clone() };
         light_views(light, &shadows, &self.scene).into_iter().map(|view| self.march(light, view)).collect()
@@ -42,10 +42,10 @@ impl Reference<'_> {
         let shadows = &self.settings.shadows;
         let cutting = Cutting::Shading(self.shading());
         let stack = Stack::new(self, &view.frame, shadows.kernel, shadows.quadrature, cutting);
-        // Materials do not depend on light, so all slabs at once; then light, slab by slab.
+        // Materials do not depend on light, so all slabs are classified at once; then light proceeds slab by slab.
         let materials: Vec<_> =
             (0..view.frame.slab_count).into_par_iter().map(|k| stack.materials(k)).collect();
-        // In front of the first slab is what the hood lets through.
+        // In front of the first slab, light is limited only by the hood.
         let cone = light.cone();
         let in_front = |pixel: u32| {
             let (i, j) = (f64::from(pixel % view.frame.size[0]), f64::from(pixel / view.frame.size[0]));
@@ -74,7 +74,8 @@ impl Reference<'_> {
         ViewSheets { view, deposits, transmittance }
     }
 
-    /// D/T: which of the transmittances in a slab of optical depth τ counts for it.
+    /// Returns D/T: the mean or first transmittance within a slab of optical depth τ, relative to that in front of
+    /// it.
     fn deposited_share(&self, optical_depth: f64) -> f64 {
         match self.settings.shadows.deposit {
             _ if self.options.fault == Fault::DepositAfter => (-optical_depth).exp(),

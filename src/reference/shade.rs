@@ -1,4 +1,4 @@
-//! The colour of a sample: P eq. 2 – 4 with the light of the attenuation volumes.
+//! Shading of a sample: P eq. 2 – 4 with the light of the attenuation volumes.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -17,57 +17,57 @@ use crate::model::{
 };
 use crate::plan::MAX_STRETCH_LEVEL;
 
-/// The lights and the eye of one picture.
+/// Shader of one picture: its lights and its eye.
 pub(super) struct Shader<'r> {
     reference: &'r Reference<'r>,
     lamps: Vec<Lamp<'r>>,
-    /// Length to which gradients refer, in scene units.
+    /// Opacity unit in scene units, to which gradients refer.
     opacity_unit: f64,
-    /// What light meets.
+    /// Lookup table of the transfer function of lights.
     lighting: BakedTransfer,
-    /// The kernel of what is fetched from the pyramid.
+    /// Kernel of fetches from the pyramid.
     profile: Profile,
     remaining: Remaining,
-    /// How open to the sky places are, where there is one that material attenuates.
+    /// Sky visibility, if there is a sky that material attenuates.
     openness: Option<Openness>,
-    /// Light that has bounced, where any does.
+    /// Bounced light, if any light bounces.
     bounced: Option<Bounced>,
-    /// See [`sides`]; evenly over densities 0 … 1.
+    /// Result of [`sides`], evenly spaced over densities 0 … 1.
     sides: Vec<f64>,
 }
 
-/// A point of the volume that is shaded.
+/// Sample of the volume that is shaded.
 pub(super) struct Sampled {
-    /// In index space.
+    /// Position in index space.
     pub(super) point: DVec3,
     pub(super) density: f64,
-    /// In scene space.
+    /// Gradient in scene space.
     pub(super) gradient: DVec3,
-    /// Of the pyramid, as far as the kernel is stretched.
+    /// Pyramid level that corresponds to the kernel's stretch.
     pub(super) level: f64,
 }
 
-/// A light that is on.
+/// Light that is on, with its attenuation.
 struct Lamp<'r> {
-    /// The light in scene space.
+    /// Light resolved into scene space.
     light: SceneLight,
     /// Linear colour times intensity and balance: `C_L` of P eq. 5.
     rgb: [f64; 3],
     attenuated: Attenuated<'r>,
 }
 
-/// By what a light is attenuated.
+/// Source of a light's attenuation.
 enum Attenuated<'r> {
     Not,
     Volume(&'r Attenuation),
     Rays(Box<ShadowRays<'r>>),
 }
 
-/// What the gradient says about a sample.
+/// Surface properties of a sample, from its gradient.
 struct Surface {
-    /// From dense to thin; zero where there is no gradient.
+    /// Unit vector from dense to thin; zero where there is no gradient.
     normal: DVec3,
-    /// 0: the inside of something, lit evenly from all sides; 1: a surface.
+    /// Surface weight: 0 inside a material, which is lit evenly from all sides; 1 on a surface.
     weight: f64,
 }
 
@@ -81,7 +81,7 @@ impl<'r> Shader<'r> {
             light: reference.light(index),
             rgb: light.color.map(|c| linear_from_srgb(c) * light.intensity * balance),
             attenuated: match attenuations.get(index) {
-                // The picture's own reconstruction: once for all rays (P §3.3).
+                // Shadow rays use the picture's own reconstruction, set up once for all rays (P §3.3).
                 _ if algorithm == ShadowAlgorithm::Direct && light.needs_volume() => {
                     let sampling = &settings.sampling;
                     Attenuated::Rays(Box::new(ShadowRays::new(
@@ -108,16 +108,16 @@ impl<'r> Shader<'r> {
         }
     }
 
-    /// C(s) of P eq. 2 at a sample with the transfer function's colour `C_o`:
-    /// `C_o · (emission + k_a + Σ C_l·k_d·r) + Σ C_l·k_s·(N·H)^n_s`, where r is |N·L| of surfaces that are lit from both
-    /// sides, and max(N·L, 0) for a normal to where opacity falls.
+    /// Returns C(s) of P eq. 2 at a sample with the transfer function's colour `C_o`: `C_o · (emission + k_a + Σ
+    /// C_l·k_d·r) + Σ C_l·k_s·(N·H)^n_s`, where r is |N·L| for two-sided surfaces, and max(N·L, 0) for one-sided ones
+    /// with the normal N towards falling opacity.
     pub(super) fn color(&self, sample: &Sampled, base: [f64; 3]) -> [f64; 3] {
         let &Sampled { point, density, gradient, .. } = sample;
         let shading = &self.reference.settings.shading;
         let scene = &self.reference.scene;
         let surface = self.surface(gradient);
         let is_one_sided = shading.sides == Sides::One;
-        // Where opacity falls against the gradient's descent, the other side is the outside.
+        // If opacity falls along the gradient, the outside is on the other side.
         let side = if is_one_sided { self.side_of(density) } else { 1.0 };
         let outward = surface.normal * self.turned(density);
         let place = scene.scene_from_index.transform_point3(point);
@@ -138,7 +138,7 @@ impl<'r> Shader<'r> {
             let arriving = self.arriving(lamp, sample, to_light);
             let reflected = if has_horizon {
                 let before = 0.5 + 0.5 * side.abs();
-                // What has not risen does not count, even where shadows do not.
+                // The part below the horizon does not count, even where shadows have no effect.
                 let counted = match lamp.attenuated {
                     Attenuated::Not => arriving * risen.share,
                     _ => arriving - self.reference.uncast() * (1.0 - risen.share),
@@ -148,7 +148,7 @@ impl<'r> Shader<'r> {
             } else {
                 arriving * risen.middle.abs()
             };
-            // Where there is no surface, what matter scatters towards the eye of light that comes from there.
+            // Away from surfaces, light is scattered towards the eye by the phase function.
             let amid =
                 henyey_greenstein(self.reference.settings.scattering.anisotropy, -to_light.dot(to_eye));
             let reflected = arriving * amid * (1.0 - surface.weight) + reflected * surface.weight;
@@ -168,7 +168,7 @@ impl<'r> Shader<'r> {
         std::array::from_fn(|channel| base[channel] * diffuse[channel] + specular[channel])
     }
 
-    /// The share of a light that arrives: its attenuation with the cures for darkness (P §4).
+    /// Returns the share of a light that arrives: its attenuation with the cures for darkness (P §4).
     fn arriving(&self, lamp: &Lamp<'_>, sample: &Sampled, to_light: DVec3) -> f64 {
         let point = sample.point;
         let shadows = &self.reference.settings.shadows;
@@ -189,8 +189,8 @@ impl<'r> Shader<'r> {
         self.reference.cured(looked_up)
     }
 
-    /// e^(−τ) over the steps of the rays nearby, the last of which goes half a voxel of the light volume further, times
-    /// what the volume says there. No step goes beyond the light.
+    /// Returns e^(−τ) over the steps of a near-field ray, the last of which is half a voxel of the light volume
+    /// longer, times the volume's value at its end. No step reaches beyond the light.
     fn near(&self, lamp: &Lamp<'_>, volume: &Attenuation, sample: &Sampled, to_light: DVec3) -> f64 {
         let scene = &self.reference.scene;
         let distance = match lamp.light.kind {
@@ -216,13 +216,13 @@ impl<'r> Shader<'r> {
         (-depth * lamp.light.density_scale).exp() * volume.at(at(way))
     }
 
-    /// −1 where opacity falls as density rises, and the side counts; else 1.
+    /// Returns −1 if opacity falls as density rises and surfaces are one-sided; otherwise 1.
     pub(super) fn turned(&self, density: f64) -> f64 {
         let is_one_sided = self.reference.settings.shading.sides == Sides::One;
         if is_one_sided && self.side_of(density) < 0.0 { -1.0 } else { 1.0 }
     }
 
-    /// To which side of a surface opacity falls at a density, interpolated in [`sides`].
+    /// Returns the side of a surface to which opacity falls at a density, interpolated in [`sides`].
     fn side_of(&self, density: f64) -> f64 {
         let last = self.sides.len() - 1;
         let at = density.clamp(0.0, 1.0) * last as f64;
@@ -231,11 +231,12 @@ impl<'r> Shader<'r> {
         self.sides[low] * (1.0 - t) + self.sides[low + 1] * t
     }
 
-    /// The gradient in scene space.
+    /// Returns the gradient in scene space, by the method in the settings.
     pub(super) fn gradient(&self, point: DVec3, level: f64) -> DVec3 {
         let level = level.clamp(0.0, MAX_LEVEL as f64);
         if self.reference.classified.is_some() {
-            // Twice as wide: labels are there or not from one voxel to the next. Between levels the steps are between.
+            // One level coarser, as labels change abruptly from voxel to voxel. Steps are interpolated between
+            // levels, too.
             return self.to_scene(self.gradient_of_level(point, (level + 1.0).min(MAX_STRETCH_LEVEL)));
         }
         if !self.reference.settings.has_kernel_gradients() || level >= 1.0 {
@@ -245,13 +246,13 @@ impl<'r> Shader<'r> {
         narrow + (self.prefiltered_gradient(point, 1.0) - narrow) * level
     }
 
-    /// What a gradient in index space is in scene space: by the transposed inverse.
+    /// Converts a gradient from index space to scene space, by the transposed inverse.
     fn to_scene(&self, in_index: DVec3) -> DVec3 {
         self.reference.scene.index_from_scene.matrix3.transpose() * in_index
     }
 
-    /// The gradient in scene space of the prefiltered density: that of the two levels around `level`, linear between
-    /// them, as densities are.
+    /// Returns the gradient in scene space of the prefiltered density: that of the two levels around `level`, linear
+    /// between them, as for densities.
     pub(super) fn prefiltered_gradient(&self, point: DVec3, level: f64) -> DVec3 {
         let level = level.clamp(0.0, MAX_LEVEL as f64);
         let finer = self.gradient_of_level(point, level.floor());
@@ -259,8 +260,8 @@ impl<'r> Shader<'r> {
         self.to_scene(finer + (coarser - finer) * level.fract())
     }
 
-    /// Differences of a level of the pyramid, one and two of its voxels to either side, with weights that are exact to
-    /// the fourth order: f′(x) ≈ [8 (f(x + h) − f(x − h)) − (f(x + 2h) − f(x − 2h))] / 12h.
+    /// Returns differences of a level of the pyramid, one and two of its voxels to either side, with weights that are
+    /// exact to the fourth order: f′(x) ≈ [8 (f(x + h) − f(x − h)) − (f(x + 2h) − f(x − 2h))] / 12h.
     fn gradient_of_level(&self, point: DVec3, level: f64) -> DVec3 {
         let step = level.exp2();
         let fetch = |at: DVec3| self.reference.gathered_pyramid(Side::Eye).fetch(at, level);
@@ -282,7 +283,7 @@ impl<'r> Shader<'r> {
         }
     }
 
-    /// Unit vector from a scene point towards the eye.
+    /// Returns the unit vector from a scene point towards the eye.
     fn towards_eye(&self, place: DVec3) -> DVec3 {
         let camera = &self.reference.settings.camera;
         let backward = camera.scene_from_view().z_axis;
@@ -293,18 +294,18 @@ impl<'r> Shader<'r> {
     }
 }
 
-/// The phase function of Henyey and Greenstein over that of matter which scatters evenly; `mean` is its mean cosine.
+/// Returns the Henyey–Greenstein phase function relative to isotropic scattering; `mean` is its mean cosine.
 fn henyey_greenstein(mean: f64, cosine: f64) -> f64 {
     (1.0 - mean * mean) / (1.0 + mean * mean - 2.0 * mean * cosine).powf(1.5)
 }
 
-/// For each entry of a table the balance of rises and falls of extinction around it, each weighted by
+/// Returns for each entry of a table the balance of rises and falls of extinction around it, each weighted by
 /// e^(−distance / 4 entries): 1 where it rises, −1 where it falls.
 fn sides(table: &BakedTransfer) -> Vec<f64> {
     let balance = |entry: usize| {
         let (mut rises, mut falls) = (0.0, 0.0);
         for (at, pair) in table.entries.windows(2).enumerate() {
-            // Whole entries between this and the nearer end of the step.
+            // Whole entries between this entry and the nearer end of the step.
             let distance = if at >= entry { at - entry } else { entry - at - 1 };
             let step = f64::from(pair[1][3]) - f64::from(pair[0][3]);
             let share = (-(distance as f64) / 4.0).exp();
@@ -317,19 +318,19 @@ fn sides(table: &BakedTransfer) -> Vec<f64> {
 }
 
 impl Reference<'_> {
-    /// What of a light counts, with the cures for darkness (P §4), if so much of it is left.
+    /// Applies the cures for darkness (P §4) to a transmittance.
     pub(super) fn cured(&self, left: f64) -> f64 {
         let shadows = &self.settings.shadows;
         let light = (shadows.gain * left + shadows.ambient_offset).min(1.0);
         1.0 - shadows.strength * (1.0 - light)
     }
 
-    /// What of a light counts of which nothing is left, and nothing is added.
+    /// Returns the cured share of a fully blocked light, without ambient offset.
     pub(super) fn uncast(&self) -> f64 {
         1.0 - self.settings.shadows.strength
     }
 
-    /// A light for which more points than its middle stand, if it has a size.
+    /// Removes the area of a light if it is sampled only at its centre.
     pub(super) fn with_points(&self, light: SceneLight) -> SceneLight {
         SceneLight { area: light.area.filter(|_| self.settings.shadows.area.samples > 1), ..light }
     }
@@ -344,7 +345,7 @@ mod tests {
 
     #[test]
     fn a_ramp_is_lit_as_the_equation_says() {
-        // Density falls from 1 to 0 over 16 voxels along x: the surface looks towards +x.
+        // Density falls from 1 to 0 over 16 voxels along x: the surface faces +x.
         let values = (0..16usize.pow(3)).map(|v| (15 - v % 16) as u8).collect();
         let volume = Volume::with_spacing("ramp", [16; 3], DVec3::ONE, Samples::U8(values)).unwrap();
         let settings = Settings {

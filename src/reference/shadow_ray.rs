@@ -1,5 +1,5 @@
-//! Rays to the light: what attenuates it on the way to a point (P eq. 7 and 8), for every voxel of a
-//! light volume or for every sample of the picture.
+//! Shadow rays: attenuation of light on the way to a point (P eq. 7 and 8), for every voxel of a light volume or for
+//! every sample of the picture.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -11,10 +11,10 @@ use super::remains::cut::Remaining;
 use super::{Reference, gather};
 use crate::model::{BakedTransfer, Deposit, Kernel, LightKind, Quadrature, SceneLight};
 
-/// What rays to one light are sampled with.
+/// Sampler of shadow rays to one light.
 pub(super) struct ShadowRays<'r> {
     reference: &'r Reference<'r>,
-    /// What stands for the light; mostly the light itself.
+    /// Point lights that represent the light; usually the light itself.
     points: Vec<SceneLight>,
     profile: Profile,
     quadrature: Quadrature,
@@ -23,7 +23,7 @@ pub(super) struct ShadowRays<'r> {
 }
 
 impl<'r> ShadowRays<'r> {
-    /// Rays to light `index`, reconstructed with a kernel.
+    /// Creates rays to light `index`, with densities reconstructed by a kernel.
     pub(super) fn new(
         reference: &'r Reference<'r>,
         index: usize,
@@ -48,13 +48,13 @@ impl<'r> ShadowRays<'r> {
         }
     }
 
-    /// What is left of the light at an index-space point: the mean over the light.
+    /// Returns the transmittance of the light at an index-space point: the mean over its points.
     pub(super) fn attenuation(&self, point: DVec3) -> f64 {
         self.attenuation_above(point, DVec3::ZERO)
     }
 
-    /// The same of a surface that only what lies above it reaches, where `up` points there: all of the light where that
-    /// is zero.
+    /// Returns the transmittance at a surface that receives light only from above, in direction `up`; from everywhere
+    /// if `up` is zero.
     pub(super) fn attenuation_above(&self, point: DVec3, up: DVec3) -> f64 {
         let place = self.reference.scene.scene_from_index.transform_point3(point);
         let is_above = |light: &&SceneLight| {
@@ -68,8 +68,8 @@ impl<'r> ShadowRays<'r> {
         seen.map(|light| self.attenuation_of(light, point)).sum::<f64>() / self.points.len() as f64
     }
 
-    /// ∏ (1 − α(s + r·k·Δs)) over the samples between an index-space point and a point light, times what
-    /// the hood lets through. Point samples: nothing is stretched.
+    /// Returns ∏ (1 − α(s + r·k·Δs)) over the samples between an index-space point and a point light, times the share
+    /// that the hood lets through. Point samples: kernels are not stretched.
     fn attenuation_of(&self, light: &SceneLight, point: DVec3) -> f64 {
         let reference = self.reference;
         let place = reference.scene.scene_from_index.transform_point3(point);
@@ -87,12 +87,12 @@ impl<'r> ShadowRays<'r> {
             Deposit::Front => 1.0,
             Deposit::SlabMean => 0.5,
         };
-        // Beyond the grid is nothing.
+        // There is no material outside the grid.
         let across = 2.0 * reference.scene.support_radius()
             + (place.length() - reference.scene.support_radius()).max(0.0);
         let end = reach.min(across);
         let begin_of = |k: u32| (f64::from(k) + first - 0.5) * step;
-        // The last piece of the way is as long as what is left of it.
+        // The last step is shortened to the remaining distance.
         let count = (end / step - first + 0.5).ceil().max(0.0) as u32;
         let support = reference.scene.support_in_index();
         let optical_depth: f64 = (0..count)
@@ -123,7 +123,7 @@ impl<'r> ShadowRays<'r> {
 }
 
 impl Reference<'_> {
-    /// The attenuation volume of a point light, filled by a ray from every voxel (P §3.4).
+    /// Computes the attenuation volume of a point light by a ray from every voxel (P §3.4).
     pub(super) fn raycast(&self, light: &SceneLight, divisor: usize) -> Attenuation {
         let shadows = &self.settings.shadows;
         let mut volume = Attenuation::unlit(self.scene.dims, divisor);

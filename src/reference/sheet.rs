@@ -1,5 +1,4 @@
-//! A stack of sheet buffers: densities with either kind of weights, and what they mean after
-//! classification.
+//! Stack of sheet buffers: densities with either kind of weights, and their classification.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -12,35 +11,35 @@ use super::{Fault, Reference, Weights, footprint, gather};
 use crate::model::{BakedTransfer, Classification, Kernel, Quadrature};
 use crate::plan::SheetFrame;
 
-/// What sums over the voxels that are there are divided by at least: so little is there below that nobody sees it.
+/// Lower limit of the presence by which sums over present voxels are divided; below it nothing is visible.
 const LEAST_PRESENCE: f64 = 1e-4;
 
-/// The sheets of one pass.
+/// Sheets of one pass.
 pub(super) struct Stack<'r> {
     reference: &'r Reference<'r>,
-    /// Rays and slabs.
+    /// Rays and slabs of the stack.
     pub frame: &'r SheetFrame,
     side: Side,
-    /// Of the kernel that spreads densities, or classified voxels.
+    /// Kernel that spreads densities, or classified voxels.
     profile: Profile,
     quadrature: Quadrature,
-    /// What the densities of the sheets mean.
+    /// Table that classifies densities of the sheets.
     table: BakedTransfer,
     remaining: Cutting,
 }
 
-/// How what is cut away ends: at once for the eye, softly for light.
+/// Treatment of cuts: abrupt for the eye, soft for light.
 pub(super) enum Cutting {
-    /// What the eye sees.
+    /// Part visible to the eye.
     Seen(Remaining),
-    /// What attenuates light.
+    /// Part that attenuates light.
     Shading(Remaining),
 }
 
-/// What one slab does to one ray.
+/// Contribution of one slab to one ray.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sample {
-    /// The index-space point in the middle of the slab.
+    /// Index-space point in the middle of the slab.
     pub point: DVec3,
     /// Linear colour of the transfer function.
     pub rgb: [f64; 3],
@@ -68,8 +67,8 @@ impl<'r> Stack<'r> {
         Self { reference, frame, side, profile, quadrature, table, remaining }
     }
 
-    /// The mean densities of slab `k`, row by row; 0 outside the volume's support. What is splatted is divided by the
-    /// share of the kernels that lies on voxels: the mean of those that are there.
+    /// Returns the mean densities of slab `k`, row by row; 0 outside the volume's support. Splatted sums are divided
+    /// by the share of the kernels that lies within the grid.
     pub(super) fn densities(&self, k: u32) -> Vec<f64> {
         let Self { reference, frame, profile, quadrature, .. } = self;
         match reference.weights() {
@@ -77,7 +76,7 @@ impl<'r> Stack<'r> {
                 let points = (weights == Weights::Scatter).then_some(*quadrature);
                 let shift = reference.kernel_shift();
                 if let Some(classified) = reference.classified(self.side) {
-                    // Of what is there the sums alone.
+                    // Sums of classified voxels are not normalised.
                     return footprint::splat(&classified.field, frame, profile, points, shift, k);
                 }
                 let sums = footprint::splat(&reference.field, frame, profile, points, shift, k);
@@ -97,8 +96,8 @@ impl<'r> Stack<'r> {
         }
     }
 
-    /// Linear colour and extinction of slab `k`, row by row: the densities classified, or the classified
-    /// voxels spread.
+    /// Returns linear colour and extinction of slab `k`, row by row: classified densities, or spread classified
+    /// voxels.
     pub(super) fn materials(&self, k: u32) -> Vec<[f64; 4]> {
         let Self { reference, frame, side, profile, quadrature, table, remaining: _ } = self;
         let Some(classified) = reference.classified(*side) else {
@@ -118,7 +117,8 @@ impl<'r> Stack<'r> {
             let material = |at: usize| {
                 let [i, j] = self.place_of(at as u32);
                 let place = [i, j, f64::from(k)];
-                // Others stand in for voxels that are missing, but not beyond the grid.
+                // Missing voxels have substitute values, so the sums are multiplied by presence; the grid's border is
+                // excluded, as nothing is substituted outside.
                 let there = match &reference.presence {
                     Some(_) => self.presence_at(place) / self.presence_in_grid(place),
                     None => 1.0,
@@ -144,28 +144,28 @@ impl<'r> Stack<'r> {
         (0..self.pixel_count()).into_par_iter().map(material).collect()
     }
 
-    /// The middle of slab `k` on a pixel's ray, if there can be material.
+    /// Returns the middle of slab `k` on a pixel's ray, if there can be material.
     fn material_at(&self, [i, j, k]: [f64; 3]) -> Option<DVec3> {
         let point = self.frame.point(i, j, self.frame.depth_of(k));
         let support = self.reference.scene.support_in_index();
-        // Slack for faces that lie exactly in the middle of a slab.
+        // Tolerance for faces that lie exactly in the middle of a slab.
         let is_inside = point.cmpge(support.min - 1e-9).all() && point.cmple(support.max + 1e-9).all();
         is_inside.then_some(point)
     }
 
-    /// What the material of a slab does on a pixel's ray; `None` where nothing is.
+    /// Returns the contribution of a slab's material to a pixel's ray; `None` if there is none.
     ///
     /// τ = μ(ρ̄) · Δs / cos θ, so that the opacity is 1 − e^−τ (P eq. 6).
     pub(super) fn sample(&self, pixel: u32, k: u32, material: [f64; 4]) -> Option<Sample> {
         self.sample_of(pixel, f64::from(k), 1.0, material)
     }
 
-    /// As [`Self::sample`], for a slab with its middle in that of slab `k`, and `width` times as thick.
+    /// Computes [`Self::sample`] for a slab centred at `k` that is `width` times as thick.
     pub(super) fn sample_of(&self, pixel: u32, k: f64, width: f64, material: [f64; 4]) -> Option<Sample> {
         let [i, j] = self.place_of(pixel);
         let point = self.material_at([i, j, k])?;
         let [r, g, b, extinction] = material;
-        // Voxels that are classified are there by themselves; what is gathered of them knows what is missing.
+        // Presence is already part of the spread extinction of classified voxels.
         let there = match self.reference.settings.sampling.classification {
             Classification::Post => self.presence_at([i, j, k]),
             Classification::Pre => 1.0,
@@ -174,7 +174,7 @@ impl<'r> Stack<'r> {
         (optical_depth > 0.0).then_some(Sample { point, rgb: [r, g, b], optical_depth })
     }
 
-    /// How much of a ray's length in scene units is what remains of a slab, in whose middle a point lies.
+    /// Returns the uncut length of a ray in a slab, in scene units; `point` is in the middle of the slab.
     fn length_of(&self, [i, j, k]: [f64; 3], width: f64, point: DVec3) -> f64 {
         let lengthening =
             if self.reference.options.fault == Fault::NoObliquity { 1.0 } else { self.frame.obliquity(i, j) };
@@ -188,14 +188,14 @@ impl<'r> Stack<'r> {
         share * width * self.frame.slab * lengthening
     }
 
-    /// The share of the material of slab `k` that is there.
+    /// Returns the presence of the material in slab `k`.
     pub(super) fn presence_at(&self, at: [f64; 3]) -> f64 {
         let Self { reference, frame, profile, quadrature, .. } = self;
         reference
             .slab_mean_of(frame, *quadrature, at, |point, level| reference.presence(profile, point, level))
     }
 
-    /// The share of the kernels of slab `k` that lies within the grid, missing voxels or not; never less than
+    /// Returns the share of the kernels of slab `k` that lies within the grid, regardless of missing voxels; at least
     /// [`LEAST_PRESENCE`].
     fn presence_in_grid(&self, at: [f64; 3]) -> f64 {
         let Self { reference, frame, profile, quadrature, .. } = self;
@@ -203,14 +203,14 @@ impl<'r> Stack<'r> {
         reference.slab_mean_of(frame, *quadrature, at, share).max(LEAST_PRESENCE)
     }
 
-    /// Whether cuts leave anything of slab `k` on a pixel's ray.
+    /// Returns true if cuts leave any part of slab `k` on a pixel's ray.
     pub(super) fn remains(&self, pixel: u32, k: u32) -> bool {
         let [i, j] = self.place_of(pixel);
         let at = [i, j, f64::from(k)];
         self.material_at(at).is_some_and(|point| self.length_of(at, 1.0, point) > 0.0)
     }
 
-    /// The density with the GPU's weights in the middle of slab `k` on the ray of pixel (i, j); 0 outside the
+    /// Returns the density with the GPU's weights in the middle of slab `k` on the ray of pixel (i, j); 0 outside the
     /// volume's support.
     pub(super) fn density_at(&self, at: [f64; 3]) -> f64 {
         if self.material_at(at).is_none() {
@@ -219,7 +219,7 @@ impl<'r> Stack<'r> {
         self.density_around(at)
     }
 
-    /// As [`Self::density_at`], and outside the volume's support as it goes on there.
+    /// Returns [`Self::density_at`] without the limit to the volume's support, outside of which the field continues.
     pub(super) fn density_around(&self, at: [f64; 3]) -> f64 {
         let Self { reference, frame, side, profile, quadrature, .. } = self;
         gather::slab_mean(reference, frame, *quadrature, at, |point, level| {
@@ -227,7 +227,7 @@ impl<'r> Stack<'r> {
         })
     }
 
-    /// How much of a ray's length in scene units remains between the middles of two neighbouring slabs; nothing if the
+    /// Returns the uncut length of a ray between the middles of two neighbouring slabs, in scene units; 0 if the
     /// farther one lies outside the volume's support.
     pub(super) fn length_between(&self, [from, to]: [[f64; 3]; 2]) -> f64 {
         if self.material_at(to).is_none() {
@@ -238,13 +238,13 @@ impl<'r> Stack<'r> {
         self.length_of(middle, 1.0, point)
     }
 
-    /// A pixel's column and row.
+    /// Returns the column and row of a pixel.
     pub(super) fn place_of(&self, pixel: u32) -> [f64; 2] {
         let width = self.frame.size[0];
         [pixel % width, pixel / width].map(f64::from)
     }
 
-    /// The number of pixels of a sheet.
+    /// Returns the number of pixels of a sheet.
     pub(super) fn pixel_count(&self) -> usize {
         self.frame.size[0] as usize * self.frame.size[1] as usize
     }

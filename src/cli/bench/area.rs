@@ -1,4 +1,4 @@
-//! What lights that have a size take, beside one that has none, and coloured shadows beside grey ones.
+//! Benchmark of area lights in relation to point lights, and of coloured shadows in relation to grey ones.
 
 use serde_json::{Map, Value, json};
 
@@ -7,19 +7,20 @@ use super::{Bench, STEP_DEG};
 use crate::cli::CliError;
 use crate::model::{LightShape, Resolution, Settings};
 
-/// Points of a light and resolutions that are timed.
+/// Numbers of points on the light, and resolutions of its volume, that are timed.
 const BUILDS: [(u32, Resolution); 4] =
     [(16, Resolution::Quarter), (16, Resolution::Half), (64, Resolution::Half), (16, Resolution::Full)];
 
-/// Width of the light, in degrees.
+/// Angular diameter of the light, in degrees.
 const ANGLE_DEG: f64 = 15.0;
 
-/// Of coloured shadows: any share takes as long.
+/// Transmission of coloured shadows; its value does not affect the time.
 const TRANSMISSION: f64 = 0.8;
 
 impl Bench<'_> {
-    /// Fillings of the volume of a disc in units of B, the filling of one parallel light with the B-spline both ways; an
-    /// orbit under a disc over one without; and the same of coloured shadows over grey ones. In turn, so that a busy machine slows all of them.
+    /// Measures the filling of a disc light's volume in units of B, the filling of one parallel light with the
+    /// B-spline both ways; an orbit under a disc relative to one without; and coloured shadows relative to grey ones.
+    /// Frames alternate, so that other load on the machine slows all of them alike.
     pub(super) fn area(
         &mut self,
         cases: &mut Vec<Value>,

@@ -1,4 +1,4 @@
-//! What an edit of a transfer function takes, and another background.
+//! Benchmark of edits of a transfer function, and of a change of background.
 
 use serde_json::Value;
 
@@ -6,11 +6,13 @@ use super::report::Samples;
 use super::{Bench, WARM_UP};
 use crate::cli::CliError;
 
-/// Share of the value range by which an edit moves all control points: enough for other cells to be seen.
+/// Displacement of all control points per edit, relative to the value range: enough to change the set of visible
+/// cells.
 pub(super) const EDIT_SHARE: f64 = 0.002;
 
 impl Bench<'_> {
-    /// All control points move a little, to and fro: tables, visible cells, light and picture are made anew.
+    /// Measures small displacements of all control points, to and fro: tables, visible cells, light and picture are
+    /// recomputed.
     pub(super) fn transfer_edit(&mut self, cases: &mut Vec<Value>) -> Result<(), CliError> {
         let mut samples = Samples::default();
         let span = self.loaded.volume().shown_range().span();
@@ -28,7 +30,7 @@ impl Bench<'_> {
         Ok(())
     }
 
-    /// The background changes, which the display pass alone reads.
+    /// Measures changes of the background, which only the display pass reads.
     pub(super) fn background(&mut self, cases: &mut Vec<Value>) -> Result<(), CliError> {
         let mut samples = Samples::default();
         for frame in 0..WARM_UP + usize::from(self.args.frames) {

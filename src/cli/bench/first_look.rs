@@ -1,6 +1,6 @@
-//! What the first picture of a volume is like, in figures: how much of it the object covers, how bright it is, how much
-//! of it shadows darken with the lights that were found, how much of what is shown is the volume's box, whether a patient
-//! is seen from the front, and what finding all that takes.
+//! Benchmark of the first look, in figures: the object's coverage and brightness, the share that shadows of the
+//! chosen lights darken, the visible share of the volume's box, whether a patient is seen from the front, and the CPU
+//! time to find the look.
 
 use serde_json::{Value, json};
 
@@ -15,7 +15,7 @@ use crate::gpu::{
 use crate::model::{ShadowAlgorithm, auto};
 
 impl Bench<'_> {
-    /// Figures of the first look, whatever look the benchmark has.
+    /// Measures the first look, independently of the look of the benchmark.
     pub(super) fn first_look(&mut self, cases: &mut Vec<Value>) -> Result<(), CliError> {
         let volume = self.loaded.volume();
         let mut cpu_ms = CpuClock::start();
@@ -62,7 +62,7 @@ impl Bench<'_> {
     }
 }
 
-/// A size of the same shape whose longest edge is no longer than `most`.
+/// Scales a size down so that its longest edge is at most `most`, keeping the aspect ratio.
 fn within(size: [u32; 2], most: u32) -> [u32; 2] {
     let longest = size[0].max(size[1]);
     if longest <= most {
@@ -71,7 +71,7 @@ fn within(size: [u32; 2], most: u32) -> [u32; 2] {
     size.map(|edge| ((f64::from(edge) * f64::from(most) / f64::from(longest)).round() as u32).max(1))
 }
 
-/// CPU time of this process, from one call to the next.
+/// Stopwatch for the CPU time of this process, from one call to the next.
 struct CpuClock {
     last: Option<f64>,
 }
@@ -81,14 +81,14 @@ impl CpuClock {
         Self { last: process_cpu_ms() }
     }
 
-    /// Milliseconds since the last call; `None` where the system does not say.
+    /// Milliseconds since the last call; `None` if the system does not report CPU times.
     fn lap(&mut self) -> Option<f64> {
         let before = std::mem::replace(&mut self.last, process_cpu_ms());
         self.last.zip(before).map(|(after, before)| round(after - before))
     }
 }
 
-/// Lines of the table.
+/// Formats the rows of the first-look table.
 pub(super) fn lines(cases: &[Value]) -> Vec<String> {
     let looks = cases.iter().filter(|case| case["name"] == "first-look");
     let mut lines: Vec<String> = looks

@@ -1,5 +1,5 @@
-//! How the cost of a light volume grows with the volume's edge N: the paper's O(N³) for splatting and
-//! O(N⁴) for rays show where nothing is skipped; with brick skipping and early exit both grow less.
+//! Growth of a light volume's cost with the volume's edge N. The paper's O(N³) for splatting and O(N⁴) for rays hold
+//! without skipping; with brick skipping and early ray termination both grow less.
 
 use serde_json::{Value, json};
 
@@ -9,27 +9,26 @@ use crate::data::{Dataset, synthetic};
 use crate::gpu::{Context, RenderOptions, Renderer, ShaderLibrary};
 use crate::model::{ShadowAlgorithm, auto};
 
-/// Voxels along each axis of the clouds.
+/// Numbers of voxels along each axis of the test clouds.
 const SIZES: [usize; 4] = [64, 128, 256, 512];
 
-/// The largest of them that rays are cast through: the next would take a software adapter an hour.
+/// Largest cloud for ray casting: the next would take a software adapter an hour.
 const LARGEST_FOR_RAYS: usize = 256;
 
-/// No more frames of a size once they took so long: rays through 256³ voxels without skipping take a
+/// Time limit after which a size gets no more frames, in seconds: rays through 256³ voxels without skipping take a
 /// software adapter minutes.
 const PATIENCE_S: f64 = 20.0;
 
-/// What saves work.
+/// Optimisations that are enabled in a measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Savings {
-    /// Bricks are skipped, rays end when nothing is left, and only what the picture looks up is
-    /// filled.
+    /// Brick skipping, early ray termination, and filling only the voxels that the picture looks up.
     All,
-    /// Every sample of every ray, every voxel.
+    /// No optimisation: every sample of every ray, every voxel.
     None,
 }
 
-/// Times light volumes of clouds by both algorithms.
+/// Times light volumes of clouds, filled by both algorithms.
 pub(super) fn run(
     context: &Context,
     frames: usize,
@@ -75,7 +74,7 @@ pub(super) fn run(
     Ok(())
 }
 
-/// What is compared: pairs of splatting and rays.
+/// Compared combinations: pairs of splatting and ray casting.
 const WAYS: [(ShadowAlgorithm, Savings); 4] = [
     (ShadowAlgorithm::Splat, Savings::All),
     (ShadowAlgorithm::Raycast, Savings::All),
@@ -89,7 +88,7 @@ fn label(algorithm: ShadowAlgorithm, savings: Savings) -> String {
     format!("{name}_{savings}")
 }
 
-/// Fills the light volume of a cloud's first look again and again; the light turns for each.
+/// Fills the light volume of a cloud's first look repeatedly, with the light turned each time.
 fn light_builds(
     mut renderer: Renderer,
     loaded: &Dataset,
@@ -100,7 +99,7 @@ fn light_builds(
 ) -> Result<Samples, CliError> {
     let mut settings = auto::first_settings(loaded.volume(), loaded.histogram());
     settings.shadows.algorithm = algorithm;
-    // The picture does not matter here, but it is what asks for light.
+    // The picture is irrelevant here, but requests the light volume.
     let size = [64; 2];
     let mut options = RenderOptions { timed: true, ..RenderOptions::default() };
     if savings == Savings::None {
@@ -135,7 +134,7 @@ fn light_builds(
     Ok(samples)
 }
 
-/// The slope of log₂(milliseconds) over doublings, by least squares; 0 of fewer than two sizes.
+/// Returns the slope of log₂(milliseconds) over doublings of the size, by least squares; 0 for fewer than two sizes.
 fn exponent(builds: &[f64]) -> f64 {
     let count = builds.len() as f64;
     if builds.len() < 2 {

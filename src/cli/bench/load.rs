@@ -1,9 +1,9 @@
-//! From a file to its first picture, stage by stage, and the memory that it takes.
+//! Benchmark of loading: the time from a file to its first picture, stage by stage, and the memory that it takes.
 //!
-//! *Read* ends when all voxels are there, decoded and in the machine's own order. *Statistics* are what is found out of them:
-//! what values span and which of them matter, an identity, histogram, bounds of bricks and cells, the kind of data. *Upload*
-//! is the way to the adapter, with the pyramid. *First look* is what the automatic look takes beyond all that, and *picture*
-//! a light volume and a picture at full quality.
+//! *Read* ends when all voxels are decoded and in native byte order. *Statistics* are computed from the voxels: the
+//! range of values and its robust part, content id, histogram, bounds of bricks and cells, kind of data. *Upload* is
+//! the transfer to the adapter, with the pyramid. *First look* is the additional time for the automatic look, and
+//! *picture* that for a light volume and a picture at full quality.
 
 use std::path::Path;
 use std::time::Instant;
@@ -18,13 +18,13 @@ use crate::gpu::{Context, RenderOptions, Renderer, ShaderLibrary, Stage, first_l
 use crate::model::{Settings, auto};
 use crate::plan::Request;
 
-/// What the stages are called, in their order.
+/// Names of the stages, in their order.
 pub(super) const STAGES: [&str; 5] = ["read", "statistics", "upload", "first_look", "picture"];
 
-/// Loading takes seconds: more frames than these are not needed for a median.
+/// Maximum number of frames: loading takes seconds, and a median needs no more.
 const MOST_FRAMES: usize = 3;
 
-/// Milliseconds of each of [`STAGES`], for each time that a volume was loaded.
+/// Milliseconds of each of [`STAGES`], one per repetition.
 #[derive(Debug, Default)]
 struct Stages([Vec<f64>; STAGES.len()]);
 
@@ -40,7 +40,7 @@ impl Stages {
     }
 }
 
-/// Bytes on the adapter: all, those of light volumes, and the most that there were.
+/// Memory on the adapter in bytes: in total, of light volumes, and at its peak.
 #[derive(Debug, Default)]
 struct Bytes {
     all: u64,
@@ -48,7 +48,7 @@ struct Bytes {
     peak: u64,
 }
 
-/// Milliseconds since the last call.
+/// Stopwatch for the wall-clock time since the last call.
 struct Lap(Instant);
 
 impl Lap {
@@ -62,16 +62,16 @@ impl Lap {
     }
 }
 
-/// What reading a file took, and what was found out of its voxels on the way.
+/// Splits the time since the last call into reading the file and statistics gathered while reading, in milliseconds.
 fn read_and_look(lap: &mut Lap, volume: &Volume) -> [f64; 2] {
     let looking = volume.looking_took().as_secs_f64() * 1000.0;
     [lap.take() - looking, looking]
 }
 
-/// Reads files, and finds out of their voxels what follows from them: no adapter is needed.
+/// Times reading and statistics of files, which need no adapter.
 pub(super) fn read(args: &BenchArgs, source: &Path, cases: &mut Vec<Value>) -> Result<(), CliError> {
     let mut stages = Stages::default();
-    // The first time brings the file into memory, and starts the threads.
+    // The first repetition fills the file cache and starts the threads.
     for frame in 0..=usize::from(args.frames) {
         let mut lap = Lap::start();
         let volume = args.look.read_volume(source)?;
@@ -98,11 +98,11 @@ pub(super) fn read(args: &BenchArgs, source: &Path, cases: &mut Vec<Value>) -> R
     Ok(())
 }
 
-/// Brings a volume to the adapter; no picture is begun.
+/// Uploads a volume to the adapter without rendering a picture.
 fn upload(renderer: &mut Renderer, loaded: &Dataset, settings: &Settings) -> Result<(), CliError> {
     let options = RenderOptions { timed: true, ..RenderOptions::default() };
     let (volume, settings) = (loaded.volume().id(), settings.clone());
-    // Of a size that costs nothing: it is not drawn.
+    // The smallest size, since the picture is not drawn.
     let request = Request { volume, settings, size: [1; 2], coarse: None };
     let mut job = renderer.begin(loaded, request, &options)?;
     while matches!(job.stage(), Some(Stage::Upload | Stage::Pyramid)) {
@@ -112,8 +112,8 @@ fn upload(renderer: &mut Renderer, loaded: &Dataset, settings: &Settings) -> Res
 }
 
 impl Bench<'_> {
-    /// From a file, or the numbers of a built-in volume, to its first picture at full quality, and the
-    /// memory that it takes. Pipelines are there already.
+    /// Times the way from a file, or the formula of a built-in volume, to its first picture at full quality, and
+    /// measures its memory. Pipelines are compiled beforehand.
     pub(super) fn load(
         &self,
         context: &Context,
@@ -186,7 +186,7 @@ impl Bench<'_> {
     }
 }
 
-/// What a first look takes of a volume that has been brought to an adapter, and of which nothing else has been made.
+/// Returns the time of a first look, in milliseconds, for a volume that has been uploaded but nothing else.
 fn first_look_ms(context: &Context, shaders: &ShaderLibrary, dataset: &Dataset) -> Result<f64, CliError> {
     let mut renderer = Renderer::with_shaders(context, shaders.clone())?;
     let settings = auto::first_settings(dataset.volume(), dataset.histogram());
@@ -196,7 +196,7 @@ fn first_look_ms(context: &Context, shaders: &ShaderLibrary, dataset: &Dataset) 
     Ok(lap.take())
 }
 
-/// Lines of the table of stages.
+/// Formats the rows of the table of loading stages.
 pub(super) fn lines(cases: &[Value]) -> Vec<String> {
     let timed = cases.iter().filter(|case| case["load_ms"].is_object());
     let mut lines: Vec<String> = timed

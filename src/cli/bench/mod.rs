@@ -1,14 +1,13 @@
-//! `chiaroscuro bench`: how long pictures and light volumes take, in ratios within one run.
+//! Command `chiaroscuro bench`: times pictures and light volumes, and compares them within one run.
 //!
-//! Cases: *orbit* (shadows from the cache) and *orbit-unshadowed*, frame by frame in turn;
-//! *light-drag* (the light moves, so its volume is filled for every frame); *light-build* (the two
-//! halves of the light pass of those frames); *tf-edit* (a transfer function changes); *background* (only the
-//! background does); *load* (from a file to its first picture, stage by stage) and *memory*; *read* (of that only what needs
-//! no adapter); *growth* (light volumes of clouds of growing size, splatted
-//! and by rays, with everything that saves work and without);
-//! *sky*, *area* and *scattering* (light from all around, of a light that has a size, and that bounces, in units of one
-//! light's); *paper* (the table of P §5: light volume and picture by each of the three shadow algorithms); *first-look* (figures of
-//! the picture that a volume is opened with).
+//! Cases: *orbit* (shadows from the cache) and *orbit-unshadowed*, with alternating frames; *light-drag* (the light
+//! moves, so its volume is filled for every frame); *light-build* (the two halves of the light pass of those frames);
+//! *tf-edit* (a transfer function changes); *background* (only the background does); *load* (from a file to its first
+//! picture, stage by stage) and *memory*; *read* (the stages of *load* that need no adapter); *growth* (light volumes
+//! of clouds of growing size, splatted and by rays, with all optimisations and without); *sky*, *area* and
+//! *scattering* (light volumes of the sky, of area lights and of multiple scattering, in units of one light's);
+//! *paper* (the table of P §5: light volume and picture by each of the three shadow algorithms); *first-look*
+//! (figures of the picture that a volume is opened with).
 
 use std::path::PathBuf;
 
@@ -34,13 +33,13 @@ use crate::data::Dataset;
 use crate::gpu::{Context, RenderOptions, Renderer};
 use crate::model::{Kernel, NearField, Resolution, Settings, ShadowAlgorithm};
 
-/// Frames before the clock runs: pipelines are compiled, caches are warm.
+/// Number of untimed frames at the start, which compile pipelines and fill caches.
 const WARM_UP: usize = 2;
 
-/// Degrees that camera or light move per frame.
+/// Rotation of the camera or light per frame, in degrees.
 const STEP_DEG: f64 = 12.0;
 
-/// What there is to be measured.
+/// Names of the benchmark cases.
 const CASES: [&str; 14] = [
     "orbit",
     "light-drag",
@@ -58,7 +57,7 @@ const CASES: [&str; 14] = [
     "first-look",
 ];
 
-/// Longest edge of pictures that are only looked at in figures.
+/// Longest edge of pictures from which only figures are computed, in pixels.
 const MOST_SIZE: u32 = 400;
 
 /// Arguments of `bench`.
@@ -92,7 +91,7 @@ pub(super) struct BenchArgs {
     look: LookArgs,
 }
 
-/// Runs the cases and prints them.
+/// Runs the selected cases and prints their results.
 pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
     let wants = |case: &str| {
         args.only
@@ -194,7 +193,7 @@ struct Bench<'a> {
 }
 
 impl Bench<'_> {
-    /// A frame without reading back, as the viewer draws it.
+    /// Draws a frame without reading it back, as the viewer does.
     fn frame(&mut self, settings: &Settings, samples: Option<&mut Samples>) -> Result<(), CliError> {
         let options = RenderOptions { timed: true, ..RenderOptions::default() };
         let size = self.args.size;
@@ -208,7 +207,8 @@ impl Bench<'_> {
         }
     }
 
-    /// The camera turns: with shadows and without, in turn, so that a busy machine slows both.
+    /// Times an orbit of the camera, alternately with and without shadows, so that other load on the machine slows
+    /// both alike.
     fn orbit(&mut self, cases: &mut Vec<Value>) -> Result<(Samples, Samples), CliError> {
         let (mut with, mut without) = (Samples::default(), Samples::default());
         let mut rebuilds = 0;
@@ -230,7 +230,7 @@ impl Bench<'_> {
         Ok((with, without))
     }
 
-    /// The first light turns about the vertical axis.
+    /// Times frames in which the first light turns about the vertical axis.
     fn light_drag(&mut self, cases: &mut Vec<Value>) -> Result<Samples, CliError> {
         let mut samples = Samples::default();
         let mut rebuilds = 0;
@@ -293,8 +293,8 @@ fn describe(
     case
 }
 
-/// Whether settings ask for exact kernels, slabs no thicker than voxels and whole light volumes. Light volumes may do with
-/// the prefiltered kernel where rays nearby see what it blurs.
+/// Returns true if settings use exact kernels, slabs no thicker than voxels and light volumes of full resolution.
+/// Light volumes may use the prefiltered kernel if near-field rays restore the blurred detail.
 fn is_full_quality(settings: &Settings) -> bool {
     let (sampling, shadows) = (&settings.sampling, &settings.shadows);
     let exact = |kernel: Kernel, slab: f64| kernel != Kernel::Prefiltered && slab <= 1.0;
@@ -313,7 +313,7 @@ fn print_table(result: &Value) -> Result<(), CliError> {
     for line in first_look::lines(cases).iter().chain(&load::lines(cases)) {
         print_line(line)?;
     }
-    // Those have a table of their own, and nothing to say in this one.
+    // The first-look and read cases have tables of their own.
     if cases.iter().all(|case| case["name"] == "first-look" || case["name"] == "read") {
         return Ok(());
     }

@@ -1,4 +1,4 @@
-//! What light that bounces takes, beside that of one light.
+//! Benchmark of multiple scattering, in relation to the light pass of one light.
 
 use serde_json::{Map, Value, json};
 
@@ -7,14 +7,14 @@ use super::{Bench, STEP_DEG};
 use crate::cli::CliError;
 use crate::model::{Resolution, Settings, SkyMode};
 
-/// A filling that is timed.
+/// Configuration of the scattering volume that is timed.
 struct Build {
     bounces: u32,
     directions: u32,
     resolution: Resolution,
-    /// Whether everything is grey, and light has one colour.
+    /// True if material and light are grey, so that one colour channel suffices.
     one_color: bool,
-    /// What it may take at most, where that was settled.
+    /// Agreed upper bound of the time in units of one light, if there is one.
     bound: Option<f64>,
 }
 
@@ -32,7 +32,7 @@ const BUILDS: [Build; 6] = [
 ];
 
 impl Build {
-    /// A look in which it happens.
+    /// Returns a look that uses this configuration.
     fn look(&self, lit: &Settings) -> Settings {
         let Self { bounces, directions, resolution, one_color, bound: _ } = *self;
         let mut settings = lit.clone();
@@ -57,8 +57,9 @@ impl Build {
 }
 
 impl Bench<'_> {
-    /// Fillings of the volume of bounced light in units of B, the filling of one parallel light with the B-spline both ways;
-    /// an orbit with everything over one without. In turn, so that a busy machine slows all of them.
+    /// Measures the filling of the scattering volume in units of B, the filling of one parallel light with the
+    /// B-spline both ways, and an orbit with sky and scattering relative to one without. Frames alternate, so that
+    /// other load on the machine slows all of them alike.
     pub(super) fn scattering(
         &mut self,
         cases: &mut Vec<Value>,
@@ -66,7 +67,7 @@ impl Bench<'_> {
     ) -> Result<(), CliError> {
         let lit = self.under_one_light();
         let looks = BUILDS.map(|build| build.look(&lit));
-        // Lights stay as they are: what is timed is what bounces.
+        // Lights stay unchanged, so that only scattering is timed.
         let denser = |settings: &mut Settings, scale: f64| settings.scattering.density_scale *= scale;
         let (one_light, builds) = self.fillings(&lit, &looks, denser)?;
         let unit = one_light.light_build();

@@ -1,4 +1,4 @@
-//! What the light of a sky takes, beside that of one light.
+//! Benchmark of sky light, in relation to the light pass of one light.
 
 use serde_json::{Map, Value, json};
 
@@ -8,7 +8,7 @@ use super::{Bench, STEP_DEG, WARM_UP};
 use crate::cli::CliError;
 use crate::model::{Kernel, Resolution, ReverseKernel, Settings, SkyMode};
 
-/// Directions and resolutions that are timed.
+/// Numbers of directions, and resolutions of the sky's volume, that are timed.
 const BUILDS: [(u32, Resolution); 6] = [
     (6, Resolution::Quarter),
     (14, Resolution::Quarter),
@@ -19,8 +19,9 @@ const BUILDS: [(u32, Resolution); 6] = [
 ];
 
 impl Bench<'_> {
-    /// Fillings of the sky's volume in units of B, the filling of one parallel light with the B-spline both ways; an orbit
-    /// and an edit with a sky over those without. In turn, so that a busy machine slows all of them.
+    /// Measures the filling of the sky's volume in units of B, the filling of one parallel light with the B-spline
+    /// both ways, and an orbit and an edit with a sky relative to those without. Frames alternate, so that other load
+    /// on the machine slows all of them alike.
     pub(super) fn sky(
         &mut self,
         cases: &mut Vec<Value>,
@@ -34,7 +35,7 @@ impl Bench<'_> {
             settings
         };
         let looks = BUILDS.map(|(directions, resolution)| under_a_sky(directions, resolution));
-        // Lights stay as they are: what is timed is the sky.
+        // Lights stay unchanged, so that only the sky is timed.
         let denser = |settings: &mut Settings, scale: f64| settings.sky.density_scale *= scale;
         let (one_light, builds) = self.fillings(&lit, &looks, denser)?;
         let unit = one_light.light_build();
@@ -42,7 +43,7 @@ impl Bench<'_> {
         for (((directions, resolution), samples), look) in BUILDS.into_iter().zip(&builds).zip(&looks) {
             self.frame(look, None)?;
             let asked = resolution.divisor();
-            // Of large volumes blocks are larger than asked for.
+            // Large volumes use larger blocks than requested.
             let divisor = self.renderer.sky_divisor().unwrap_or(asked);
             let instead = if divisor == asked { String::new() } else { format!("_for_1/{asked}") };
             let bound =
@@ -72,7 +73,7 @@ impl Bench<'_> {
         Ok(())
     }
 
-    /// The look under its first light alone, whose filling with the B-spline both ways is the unit B.
+    /// Returns the look with only its first light, whose filling with the B-spline both ways is the unit B.
     pub(super) fn under_one_light(&self) -> Settings {
         let mut lit = self.settings.clone();
         lit.lights.truncate(1);
@@ -81,8 +82,8 @@ impl Bench<'_> {
         lit
     }
 
-    /// Fillings of the volume of one light, and of what looks have beside it, in turn: each time `denser` changes what the
-    /// latter are made from by a factor.
+    /// Times filling the volume of one light and the volumes of other looks, alternately; each time `denser` scales
+    /// the density of the latter, so that they are filled anew.
     pub(super) fn fillings(
         &mut self,
         one_light: &Settings,
@@ -106,7 +107,7 @@ impl Bench<'_> {
         Ok((unit, builds))
     }
 
-    /// Frames of two looks in turn, each changed by `change` from frame to frame.
+    /// Times frames of two looks alternately, each modified by `change` from frame to frame.
     pub(super) fn in_turn(
         &mut self,
         looks: &[Settings; 2],
@@ -116,7 +117,7 @@ impl Bench<'_> {
         for frame in 0..WARM_UP + usize::from(self.args.frames) {
             for (at, (look, samples)) in looks.iter().zip(&mut samples).enumerate() {
                 let mut settings = look.clone();
-                // Neither finds the light of the other.
+                // Distinct densities, so that neither look reuses the light volumes of the other.
                 settings.lights.iter_mut().for_each(|light| light.density_scale += 1e-6 * at as f64);
                 change(&mut settings, frame);
                 self.frame(&settings, (frame >= WARM_UP).then_some(samples))?;

@@ -1,4 +1,4 @@
-//! This process: its signals, its threads, the time that it takes.
+//! Process-wide facilities: signals, threads, CPU time, and the state of standard output.
 
 mod closed_output;
 mod cpu_time;

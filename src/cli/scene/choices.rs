@@ -1,11 +1,11 @@
-//! What options of the look can be chosen to be, in the words of the command line.
+//! Values of command-line options that select among alternatives.
 
 use clap::ValueEnum;
 
 use crate::data::KindName;
 use crate::model::Quality;
 
-/// Where shadows come from.
+/// Shadow algorithm, as named on the command line.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(super) enum ShadowArg {
     /// Light reaches everything
@@ -18,7 +18,7 @@ pub(super) enum ShadowArg {
     Direct,
 }
 
-/// How sheets are filled.
+/// Engine that fills the sheets, as named on the command line.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(super) enum EngineArg {
     /// Pixels gather what voxels would splat: the same sums, quickly
@@ -27,7 +27,7 @@ pub(super) enum EngineArg {
     Scatter,
 }
 
-/// How truly light is computed.
+/// Quality level of lighting, as named on the command line.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(super) enum QualityArg {
     /// Light volumes alone: soft shadows, quickest
@@ -51,7 +51,7 @@ impl From<QualityArg> for Quality {
     }
 }
 
-/// A kind of data.
+/// Kind of data, as named on the command line.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(super) enum KindArg {
     /// More is more of something

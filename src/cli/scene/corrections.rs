@@ -1,4 +1,4 @@
-//! What the command line knows better than the file of a volume.
+//! Corrections of a volume that are given on the command line.
 
 use std::path::Path;
 
@@ -6,20 +6,20 @@ use crate::cli::CliError;
 use crate::data::{Corrections, Volume};
 use crate::model::{Settings, assign};
 
-/// The group of settings that are corrections.
+/// Settings group that contains the corrections.
 const GROUP: &str = "volume";
 
-/// Whether a single setting of the command line corrects the volume.
+/// Returns true if an assignment of the command line is a correction of the volume.
 fn is_correction(assignment: &str) -> bool {
     let path = assignment.split('=').next().unwrap_or_default().trim();
     path.strip_prefix(GROUP).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
-/// Corrections with those laid over them that are among single settings.
+/// Applies the corrections among the assignments of the command line to earlier ones.
 pub(super) fn laid_over(before: Corrections, set: &[String]) -> Result<Corrections, CliError> {
     let mut settings = Settings { volume: before, ..Settings::default() };
     for assignment in set.iter().filter(|assignment| is_correction(assignment)) {
-        // What is no assignment is refused when all are read.
+        // Malformed assignments are rejected later, when all of them are parsed.
         let Some((path, value)) = assignment.split_once('=') else { continue };
         (settings, _) = assign(&settings, path.trim(), value.trim())
             .map_err(|err| CliError::Usage(format!("--set: {err} (command line, {assignment:?})")))?;
@@ -33,8 +33,8 @@ pub(super) fn laid_over(before: Corrections, set: &[String]) -> Result<Correctio
     Ok(settings.volume)
 }
 
-/// What was expected in place of a value that cannot be: of those that a session brings the file's own are taken, and
-/// whoever types one is told.
+/// Returns the expected kind of value if the given one was not accepted. Sessions fall back to the file's own value
+/// in that case; on the command line it is an error.
 fn impossible(path: &str, value: &str, taken: &Corrections) -> Option<&'static str> {
     let is_another = |taken: f64| value.parse::<f64>().is_ok_and(|number| number != taken);
     match path {
@@ -47,7 +47,7 @@ fn impossible(path: &str, value: &str, taken: &Corrections) -> Option<&'static s
     }
 }
 
-/// A volume that was opened, with corrections from the command line alone: nothing else can be set.
+/// Applies corrections from the command line to an opened volume; other settings are rejected.
 pub(in crate::cli) fn corrected_by(
     source: &Path,
     volume: Volume,
@@ -63,7 +63,7 @@ pub(in crate::cli) fn corrected_by(
     corrected(source, volume, &laid_over(Corrections::default(), set)?)
 }
 
-/// A volume that was opened, corrected.
+/// Applies corrections to an opened volume.
 pub(in crate::cli) fn corrected(source: &Path, volume: Volume, by: &Corrections) -> Result<Volume, CliError> {
     if by.is_none() {
         return Ok(volume);

@@ -1,4 +1,4 @@
-//! Arguments that say how a volume is read.
+//! Command-line arguments for reading a volume.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::data::load::{Choice, Endian, LoadOptions, Portion, RawFormat, Region,
 use crate::data::{Volume, VoxelType};
 use crate::gpu::Context;
 
-/// How a volume is read.
+/// Arguments for reading a volume.
 #[derive(Debug, Clone, Args)]
 pub(in crate::cli) struct LoadArgs {
     /// Average blocks of N × N × N voxels into one, for less memory and quicker pictures; 1 is all of them
@@ -61,7 +61,7 @@ enum EndianArg {
 }
 
 impl LoadArgs {
-    /// The options for the reader.
+    /// Converts the arguments to the reader's options.
     pub(in crate::cli) fn load_options(&self) -> Result<LoadOptions, CliError> {
         let usage = |field: &str, text: &str, expected: &str| {
             CliError::Usage(format!(
@@ -97,7 +97,7 @@ impl LoadArgs {
         Ok(LoadOptions { raw, choice, ..LoadOptions::default() })
     }
 
-    /// How much of the volume is read, where that is said.
+    /// Returns the portion of the volume to be read, if one is given.
     fn portion(&self) -> Option<Portion> {
         let thinning = match (self.every, self.reduce) {
             (Some(step), _) => Thinning::Every(step.into()),
@@ -113,8 +113,8 @@ impl LoadArgs {
         self.open_chosen(source, None)
     }
 
-    /// As [`Self::open`]. Of several volumes it is that one, and as much of it as was read then, unless the command line
-    /// says something else.
+    /// Loads a volume like [`Self::open`]. `choice` selects one of several volumes and the portion that was read
+    /// earlier; arguments of the command line take precedence.
     pub(in crate::cli) fn open_chosen(
         &self,
         source: &Path,
@@ -124,20 +124,20 @@ impl LoadArgs {
         if let Some(choice) = choice {
             options.choice = options.choice.or(choice);
         }
-        // What is wrong with a file is said first.
+        // The file is read first, so that its errors are reported before those of the adapter.
         let whole = open_with_word(source, &options)?;
         let context = Context::headless()?;
         Ok((downsampled_to_fit(source, whole, &context)?, context))
     }
 }
 
-/// `uint8`
+/// Parses a voxel type such as `uint8`.
 pub(in crate::cli) fn parse_voxel_type(text: &str) -> Result<VoxelType, String> {
     let known = VoxelType::ALL.into_iter().find(|known| known.name() == text.to_lowercase());
     known.ok_or_else(|| format!("expected one of {}", VoxelType::ALL.map(VoxelType::name).join(", ")))
 }
 
-/// `1x2x3`.
+/// Parses three numbers such as `1x2x3`.
 fn triple<T: std::str::FromStr>(text: &str) -> Option<[T; 3]> {
     let parts: Vec<T> =
         text.split(['x', 'X', ',']).map(|part| part.trim().parse().ok()).collect::<Option<_>>()?;

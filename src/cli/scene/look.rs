@@ -1,4 +1,4 @@
-//! The look that arguments describe, with what the program decides where nobody else does.
+//! Look that the arguments describe, with the parts that are determined automatically.
 
 use super::LookArgs;
 use super::overlay::Overlay;
@@ -8,7 +8,7 @@ use crate::data::Dataset;
 use crate::gpu::{Open, Renderer, finish_look};
 use crate::model::{Settings, auto};
 
-/// Parts of a look that the program decides where nobody else does, by the paths of their settings.
+/// Parts of a look that are determined automatically unless they are given, with the paths of their settings.
 const OPEN: [(&str, Open); 4] = [
     ("lights", Open::Lights),
     ("floor", Open::Floor),
@@ -16,25 +16,25 @@ const OPEN: [(&str, Open); 4] = [
     ("output.exposure", Open::Exposure),
 ];
 
-/// Those that preset, session or single settings name.
+/// Automatic parts that a preset, session or single setting overrides.
 #[derive(Debug, Default)]
 pub(super) struct Named {
     paths: Vec<&'static str>,
 }
 
 impl Named {
-    /// Adds those of which something says so, by their paths.
+    /// Adds the parts for whose path `is_named` is true.
     pub(super) fn add(&mut self, is_named: impl Fn(&str) -> bool) {
         self.paths.extend(OPEN.iter().map(|(path, _)| *path).filter(|path| is_named(path)));
     }
 
-    /// Those that are left open.
+    /// Returns the parts that are still to be determined automatically.
     fn open(&self) -> Vec<Open> {
         OPEN.iter().filter(|(path, _)| !self.paths.contains(path)).map(|(_, part)| *part).collect()
     }
 }
 
-/// A look of a list that is proposed for a volume, counted from 1; `small` is a small copy of the volume.
+/// Returns a look of the list suggested for a volume, counted from 1; `small` is a small copy of the volume.
 pub(super) fn proposal(number: usize, first: &Settings, small: &Dataset) -> Result<Settings, CliError> {
     let mut looks = auto::looks(first, small.volume(), small.histogram());
     let count = looks.len();
@@ -48,7 +48,7 @@ pub(super) fn proposal(number: usize, first: &Settings, small: &Dataset) -> Resu
     Ok(looks.swap_remove(at).settings)
 }
 
-/// Settings with those parts decided that are open.
+/// Determines the open parts of a look automatically.
 fn finished(
     renderer: &mut Renderer,
     loaded: &Dataset,
@@ -57,7 +57,7 @@ fn finished(
 ) -> Result<Settings, CliError> {
     let mut look = finish_look(renderer, loaded, settings, open)?;
     if look.floor.on && !settings.floor.on {
-        // How long the picture is exposed has been found since the floor was laid.
+        // The exposure, on which the floor's colour depends, has only now been determined.
         look.floor.color = auto::floor_color(look.output.exposure);
     }
     if renderer.context().is_software() && look.casts_rays_to_all_points() {
@@ -69,38 +69,39 @@ fn finished(
     Ok(look)
 }
 
-/// A look that is made from the finished first one.
+/// Suggested look, which is derived from the finished first look.
 #[derive(Debug)]
 pub(super) struct Proposed {
-    /// Which one, counted from 1.
+    /// Number of the suggestion, counted from 1.
     pub(super) number: usize,
-    /// The first look before it is finished.
+    /// First look before its open parts are determined.
     pub(super) automatic: Settings,
-    /// A small copy of the volume.
+    /// Small copy of the volume.
     pub(super) small: Dataset,
-    /// What is laid over it.
+    /// Presets and sessions to be applied.
     pub(super) overlays: Vec<Overlay>,
-    /// The arguments.
+    /// Arguments with further settings to be applied.
     pub(super) of: LookArgs,
 }
 
-/// A look that is complete but for what needs the GPU to be decided.
+/// Look that is complete except for the parts that need the GPU.
 #[derive(Debug)]
 pub(in crate::cli) struct Look {
     settings: Settings,
     named: Named,
-    /// Instead of the settings, where another look than the first was asked for.
+    /// Suggested look that replaces the settings, if one was selected.
     proposed: Option<Proposed>,
 }
 
 impl Look {
-    /// Settings that are laid over automatic ones, as the arguments say, and the parts that these name.
+    /// Creates a look from settings to which the arguments have been applied, and the automatic parts that they
+    /// override.
     pub(super) fn new(settings: Settings, named: Named, proposed: Option<Proposed>) -> Self {
         Self { settings, named, proposed }
     }
 
-    /// The settings. Lights are placed and balanced, and the picture exposed, as the viewer does on load, unless preset,
-    /// session or a single setting say how.
+    /// Returns the final settings. Lights are placed and balanced, and the exposure is set, as in the viewer after
+    /// loading, unless a preset, session or single setting overrides them.
     pub(in crate::cli) fn settings(
         &self,
         renderer: &mut Renderer,
@@ -112,7 +113,7 @@ impl Look {
         };
         let first = finished(renderer, loaded, automatic, &Named::default().open())?;
         let proposed = proposal(*number, &first, small)?;
-        // Warnings have been given.
+        // Warnings were printed when the arguments were first applied.
         let (settings, _) = of.laid_over(proposed, overlays, loaded, |_| {})?;
         let brightness = [Open::Balance, Open::Exposure].into_iter().filter(|part| open.contains(part));
         finished(renderer, loaded, &settings, &brightness.collect::<Vec<_>>())

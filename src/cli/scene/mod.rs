@@ -1,4 +1,4 @@
-//! Arguments that say what is rendered, common to most commands.
+//! Command-line arguments that describe the scene, common to most commands.
 
 mod choices;
 mod corrections;
@@ -27,10 +27,10 @@ use crate::gpu::{Context, fitted, small_volume};
 use crate::model::auto::Wishes;
 use crate::model::{MAX_EDGE, SceneAxis, Settings, assign, auto};
 
-/// How high the floor lies, by its path.
+/// Path of the setting for the floor's height.
 const FLOOR_HEIGHT: &str = "floor.height";
 
-/// The volume as the adapter can hold it.
+/// Downsamples the volume if the adapter cannot hold it, with a warning.
 fn downsampled_to_fit(source: &Path, whole: Volume, context: &Context) -> Result<Volume, CliError> {
     let before = whole.dims();
     let volume = fitted(context, whole)?;
@@ -46,7 +46,7 @@ fn downsampled_to_fit(source: &Path, whole: Volume, context: &Context) -> Result
     Ok(volume)
 }
 
-/// `1920x1080`.
+/// Parses a picture size such as `1920x1080`.
 pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let expected = || format!("expected WIDTHxHEIGHT between 1x1 and {MAX_EDGE}x{MAX_EDGE}, found {text:?}");
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(expected)?;
@@ -54,7 +54,7 @@ pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     Ok([parse(width).ok_or_else(expected)?, parse(height).ok_or_else(expected)?])
 }
 
-/// The look.
+/// Arguments that describe the look.
 #[derive(Debug, Clone, Args)]
 pub(super) struct LookArgs {
     /// The look that is proposed under this number instead of the first; `info --json` lists them
@@ -86,15 +86,15 @@ pub(super) struct LookArgs {
     engine: Option<EngineArg>,
     #[command(flatten)]
     load: LoadArgs,
-    /// Preset and session once they have been read, which a pipe allows once.
+    /// Preset and session after they have been read: a pipe can be read only once.
     #[arg(skip)]
     read: OnceLock<Vec<Overlay>>,
-    /// The panorama, likewise.
+    /// Panorama after it has been read, cached for the same reason.
     #[arg(skip)]
     lit_by: OnceLock<Option<Surroundings>>,
 }
 
-/// What is rendered, and how it looks.
+/// Arguments for the volume and its look.
 #[derive(Debug, Clone, Args)]
 pub(super) struct SceneArgs {
     #[arg(help = "Volume: a file, or builtin:NAME[:N]")]
@@ -106,7 +106,7 @@ pub(super) struct SceneArgs {
     force: bool,
 }
 
-/// A volume with what follows from it, after a word about values that are not finite.
+/// Computes a volume's dataset, and warns of values that are not finite.
 fn checked(volume: Volume) -> Dataset {
     let missing = volume.non_finite_voxels();
     if missing > 0 {
@@ -116,18 +116,19 @@ fn checked(volume: Volume) -> Dataset {
 }
 
 impl SceneArgs {
-    /// Loads the volume, and opens the adapter that shows it.
+    /// Loads the volume, and opens the adapter that renders it.
     pub(super) fn load(&self) -> Result<(Dataset, Context), CliError> {
         let (volume, context) = self.look.load.open(&self.file)?;
         Ok((checked(self.look.corrected(&self.file, volume)?), context))
     }
 
-    /// What is to be loaded.
+    /// Path or built-in name of the volume.
     pub(super) fn source(&self) -> &Path {
         &self.file
     }
 
-    /// Refuses to write over what is read, or twice over one file, or over files of others unless that is wanted.
+    /// Rejects outputs that would replace an input, another output or, without `--force`, a file that this program
+    /// has not made.
     pub(super) fn keep_apart(&self, outputs: &[&Path]) -> Result<(), CliError> {
         let LookArgs { preset, session, surroundings, .. } = &self.look;
         let named = [preset, session, surroundings].map(|path| path.as_deref());
@@ -135,25 +136,25 @@ impl SceneArgs {
         keep_apart(&inputs.flatten().collect::<Vec<_>>(), outputs, self.force)
     }
 
-    /// Finds the look.
+    /// Applies the arguments of the look to the automatic look.
     pub(super) fn look(&self, loaded: &Dataset) -> Result<Look, CliError> {
         self.look.look(loaded)
     }
 }
 
 impl LookArgs {
-    /// Reads a volume, whatever shows it.
+    /// Reads a volume, without regard to an adapter.
     pub(super) fn read_volume(&self, source: &Path) -> Result<Volume, CliError> {
         Ok(open_with_word(source, &self.load.load_options()?)?)
     }
 
-    /// What an adapter shows of a volume that was read.
+    /// Returns the corrected dataset of a volume, downsampled if the adapter cannot hold it.
     pub(super) fn shown(&self, source: &Path, whole: Volume, context: &Context) -> Result<Dataset, CliError> {
         let volume = downsampled_to_fit(source, whole, context)?;
         Ok(checked(self.corrected(source, volume)?))
     }
 
-    /// The preset and the session that the arguments name, the one that counts last.
+    /// Returns the preset and the session that the arguments name; the later one takes precedence.
     fn overlays(&self) -> Result<Vec<Overlay>, CliError> {
         if let Some(read) = self.read.get() {
             return Ok(read.clone());
@@ -164,7 +165,7 @@ impl LookArgs {
         Ok(self.read.get_or_init(|| read).clone())
     }
 
-    /// The panorama that the arguments name.
+    /// Returns the panorama that the arguments name.
     fn lit_by(&self) -> Result<Option<&Surroundings>, CliError> {
         if self.lit_by.get().is_none() {
             let read = self.surroundings.as_deref().map(read_surroundings).transpose()?;
@@ -173,7 +174,7 @@ impl LookArgs {
         Ok(self.lit_by.get().and_then(Option::as_ref))
     }
 
-    /// A volume that was opened, corrected as its session and single settings say.
+    /// Applies the corrections of the session and of single settings to an opened volume.
     fn corrected(&self, source: &Path, volume: Volume) -> Result<Volume, CliError> {
         let opened_id = volume.opened_id();
         let overlays = self.overlays()?;
@@ -182,12 +183,12 @@ impl LookArgs {
         corrected(source, volume, &by)
     }
 
-    /// The axis that is to point up, if preset, session or single settings name one.
+    /// Returns the scene axis that points up, if a preset, session or single setting names one.
     fn up(&self, overlays: &[Overlay], ranges: &ValueRanges) -> Option<SceneAxis> {
         let of_setting = |assignment: &String| {
             let (path, value) = assignment.split_once('=')?;
             let path = Some(path.trim()).filter(|path| ["camera", "camera.up"].contains(path))?;
-            // What cannot be understood is said when it is its turn.
+            // Errors are reported when the setting is applied.
             let (settings, _) = assign(&Settings::default(), path, value.trim()).ok()?;
             Some(settings.camera.up)
         };
@@ -195,7 +196,7 @@ impl LookArgs {
         of_overlays.chain(self.set.iter().filter_map(of_setting)).last()
     }
 
-    /// The automatic look, of a volume that stands as somebody says: lights and floor are where they belong then.
+    /// Returns the automatic look, for the up axis that was requested, so that lights and floor match it.
     fn first_settings(&self, overlays: &[Overlay], loaded: &Dataset) -> Settings {
         let (volume, histogram) = (loaded.volume(), loaded.histogram());
         let treated_as = self.treat_as.map(KindName::from);
@@ -203,13 +204,13 @@ impl LookArgs {
             return auto::first_settings_with(volume, histogram, Wishes { treated_as, ..Wishes::default() });
         };
         let mut settings = auto::first_settings_with(volume, histogram, Wishes { treated_as, up });
-        // Against what the file says.
+        // Overrides the orientation from the file.
         auto::stand(&mut settings, volume, up);
         settings
     }
 
-    /// The automatic look, with preset, session and single settings laid over it.
-    /// All of them are checked here, before anything slow begins.
+    /// Applies preset, session and single settings to the automatic look. All of them are validated here, before
+    /// anything slow begins.
     pub(super) fn look(&self, loaded: &Dataset) -> Result<Look, CliError> {
         let overlays = self.overlays()?;
         let automatic = self.first_settings(&overlays, loaded);
@@ -218,7 +219,7 @@ impl LookArgs {
             None | Some(1) => None,
             Some(number) => {
                 let small = small_volume(loaded)?;
-                // Whether there is one; what it is made from is found later.
+                // Validates the number; the look itself is derived later.
                 proposal(number, &automatic, &small)?;
                 Some(Proposed { number, automatic, small, overlays, of: self.clone() })
             }
@@ -226,7 +227,7 @@ impl LookArgs {
         Ok(Look::new(settings, named, proposed))
     }
 
-    /// Settings with preset, session and single settings laid over them, and which open parts these name.
+    /// Applies preset, session and single settings, and returns the automatic parts that they override.
     fn laid_over(
         &self,
         mut settings: Settings,
@@ -246,7 +247,7 @@ impl LookArgs {
             named.add(|part| ["lights", "shadows.balance"].contains(&part));
         }
         let mut settings = self.single_settings(settings, warn)?;
-        // It has been made into the volume.
+        // The volume already has these corrections.
         settings.volume = *volume.corrections();
         named.add(|part| self.sets(part));
         let says_how_high = self.sets(FLOOR_HEIGHT) || overlays.iter().any(|one| one.names(FLOOR_HEIGHT));
@@ -257,7 +258,8 @@ impl LookArgs {
         Ok((settings, named))
     }
 
-    /// Whether a single setting of the command line is one, or a part or the whole of it. Whoever names it means it.
+    /// Returns true if an assignment of the command line refers to a setting, to a part of it or to a group that
+    /// contains it.
     fn sets(&self, path: &str) -> bool {
         self.set.iter().any(|assignment| {
             let set = assignment.split('=').next().unwrap_or_default().trim();

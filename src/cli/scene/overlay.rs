@@ -1,4 +1,4 @@
-//! Presets and sessions that arguments name, read before anything is laid over anything.
+//! Presets and sessions named by arguments; all are read before any is applied.
 
 use std::path::Path;
 
@@ -7,17 +7,17 @@ use crate::data::{Corrections, ValueRanges, read_small};
 use crate::export::{may_carry_record, read_record};
 use crate::model::{Preset, Record, SceneAxis, Settings};
 
-/// A preset or session.
+/// Preset or session that is applied to settings.
 #[derive(Debug, Clone)]
 pub(super) struct Overlay {
     what: &'static str,
-    /// A built-in's name, a file, or an exported picture that carries it.
+    /// Name of a built-in preset, or path of a file or exported picture.
     name: String,
     record: Record,
 }
 
 impl Overlay {
-    /// Reads one.
+    /// Reads a preset or session from a built-in, a file, or an exported picture.
     pub(super) fn read(what: &'static str, path: &Path) -> Result<Self, CliError> {
         let name = path.display().to_string();
         let builtin = Preset::find(&name).filter(|_| what == "preset");
@@ -38,24 +38,24 @@ impl Overlay {
         Ok(Self { what, name, record })
     }
 
-    /// Whether it says something of a setting, by its path.
+    /// Returns true if it contains the setting with this path.
     pub(super) fn names(&self, path: &str) -> bool {
         self.record.names(path)
     }
 
-    /// How the volume was corrected that it is of, if that is what was opened.
+    /// Returns the corrections of its volume, if that is the opened one.
     pub(super) fn corrections_of(&self, opened_id: u64) -> Option<Corrections> {
         self.record.corrections_of(opened_id)
     }
 
-    /// The axis that points up, if it names one.
+    /// Returns the scene axis that points up, if it contains that setting.
     pub(super) fn up(&self, ranges: &ValueRanges) -> Option<SceneAxis> {
-        // What cannot be understood is said when it is laid over the look.
+        // Errors are reported when the overlay is applied to the look.
         let (settings, _) = self.record.apply(&Settings::default(), ranges).ok()?;
         self.names("camera.up").then_some(settings.camera.up)
     }
 
-    /// Lays it over settings, for a volume with these values.
+    /// Applies it to settings, for a volume with these ranges of values.
     pub(super) fn over(
         &self,
         settings: &Settings,
@@ -89,7 +89,7 @@ mod tests {
         };
         assert_eq!(up(r#"{"camera": {"up": "minus_y"}}"#), Some(SceneAxis::MinusY));
         assert_eq!(up(r#"{"camera": {"distance": 3.0}}"#), None);
-        // Of a time when there was no choice.
+        // Written by a version that had no choice of axis.
         assert_eq!(up(r#"{"schema": 1, "camera": {"azimuth_deg": 3.0}}"#), Some(SceneAxis::PlusZ));
         assert_eq!(up(r#"{"camera": {"up": "sideways"}}"#), None);
     }

@@ -1,4 +1,4 @@
-//! What the command line says of single settings.
+//! Single settings given on the command line.
 
 use super::LookArgs;
 use super::choices::{EngineArg, ShadowArg};
@@ -6,7 +6,7 @@ use crate::cli::CliError;
 use crate::model::{Engine, Quality, Settings, ShadowAlgorithm, assign};
 
 impl LookArgs {
-    /// Lays over settings what the command line says of single ones.
+    /// Applies the single settings of the command line.
     pub(super) fn single_settings(
         &self,
         mut settings: Settings,

@@ -1,4 +1,4 @@
-//! Volumes that take far more memory than their files, which compress well: a word before they are read.
+//! Decompression warning for volumes that take far more memory than their well-compressed files.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,31 +8,31 @@ use super::super::outputs::warn_line;
 use crate::data::load::{LoadControl, LoadError, LoadOptions, Portion, Size, human_bytes};
 use crate::data::{Volume, open};
 
-/// Bytes of voxels below which nothing is said: they are read in seconds.
+/// Bytes of voxels below which there is no warning: they are read in seconds.
 const SMALL_BYTES: u64 = 1 << 30;
 
-/// Bytes of voxels for each byte of a file, beyond which something is said: photographs and scans have up to 10, label maps
-/// up to 200, and zeros 1000 (zlib's most).
+/// Ratio of voxel bytes to file bytes above which a warning is printed: photographs and scans have up to 10, label
+/// maps up to 200, and zeros 1000 (zlib's maximum).
 const USUAL_RATIO: u64 = 256;
 
-/// Bytes of voxels that are read for a look at the values: a moment's work, and enough for percentiles.
+/// Bytes of voxels that are read for an overview of the values: quick, and enough for percentiles.
 const GLANCE_BYTES: u64 = 64 << 20;
 
-/// Bytes of a file that may be no more than the description of others.
+/// Size of a file, in bytes, up to which it may be a header that refers to other files.
 const DESCRIPTION_BYTES: u64 = 64 << 10;
 
-/// Files of a folder that are counted.
+/// Maximum number of files in a folder that are counted.
 const MOST_FILES: usize = 100_000;
 
-/// Coarsest step between voxels that are read.
+/// Largest stride between voxels that are read.
 const LONGEST_STEP: usize = 64;
 
-/// Opens a volume, after a word where its files unfold to far more than they are.
+/// Opens a volume, with a warning if its files decompress to far more bytes than they have.
 pub(in crate::cli) fn open_with_word(source: &Path, options: &LoadOptions) -> Result<Volume, LoadError> {
     let stored = stored_bytes(source);
     let is_said = AtomicBool::new(false);
     let control = LoadControl::weighing(move |size| {
-        // Readers may ask again.
+        // Readers may call this more than once.
         if let Some(stored) = unfolds(stored, size)
             && !is_said.swap(true, Ordering::Relaxed)
         {
@@ -44,8 +44,8 @@ pub(in crate::cli) fn open_with_word(source: &Path, options: &LoadOptions) -> Re
     open(source, options, &control)
 }
 
-/// Opens a volume for a look at its values. Where its files unfold to far more than they are, that is every Nth voxel alone,
-/// unless the options say how much is read.
+/// Opens a volume for an overview of its values. If its files decompress to far more bytes than they have, only every
+/// Nth voxel is read, unless the options specify a portion.
 pub(in crate::cli) fn open_for_a_glance(source: &Path, options: &LoadOptions) -> Result<Volume, LoadError> {
     let stored = stored_bytes(source);
     let thinned = Arc::new(Mutex::new(None));
@@ -67,7 +67,7 @@ pub(in crate::cli) fn open_for_a_glance(source: &Path, options: &LoadOptions) ->
     open(source, &options, &LoadControl::new())
 }
 
-/// Bytes of the file or of the files of a folder; none where that says nothing of the voxels.
+/// Returns the bytes of a file, or of the files in a folder; `None` if they do not indicate the size of the voxels.
 fn stored_bytes(source: &Path) -> Option<u64> {
     let metadata = std::fs::metadata(source).ok()?;
     if metadata.is_file() {
@@ -83,13 +83,13 @@ fn stored_bytes(source: &Path) -> Option<u64> {
     )
 }
 
-/// The bytes of the files, where they unfold to far more.
+/// Returns the bytes of the files, if they decompress to far more.
 fn unfolds(stored: Option<u64>, size: &Size) -> Option<u64> {
     let bytes = size.bytes();
     stored.filter(|&stored| bytes >= SMALL_BYTES && bytes / USUAL_RATIO >= stored)
 }
 
-/// The least step that reads little enough.
+/// Returns the smallest stride at which few enough bytes are read.
 fn glance(size: &Size) -> Option<usize> {
     let of_voxel = size.voxel_type.bytes() as u64;
     (2..=LONGEST_STEP).find(|&step| {
@@ -112,13 +112,13 @@ mod tests {
     #[test]
     fn files_that_unfold_are_known_and_thinned() {
         let size = |dims: [usize; 3]| Size { dims, voxel_type: VoxelType::U8, is_read_whole: false };
-        // Forty slices of 16000² zeros in 10 MB.
+        // Forty slices of 16000² zeros, compressed to 10 MB.
         let slices = size([16_000, 16_000, 40]);
         assert_eq!(unfolds(Some(10_000_000), &slices), Some(10_000_000));
         assert_eq!(glance(&slices), Some(6));
         let words = in_words(10_000_000, &slices);
         assert_eq!(words, "9.5 MiB of files unfold to 16000 × 16000 × 40 voxels in 9.5 GiB");
-        // As much in files that compress no better than photographs, little, and what is not known.
+        // Poorly compressible data, small data, and files of unknown size.
         assert_eq!(unfolds(Some(1 << 30), &slices), None);
         assert_eq!(unfolds(Some(1000), &size([512, 512, 512])), None);
         assert_eq!(unfolds(None, &slices), None);

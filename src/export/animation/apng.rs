@@ -1,5 +1,4 @@
-//! PNG that moves (APNG): every colour, and transparency as it is. Programs that do not know of such files
-//! show the first picture.
+//! Animated PNG (APNG): full colour and transparency. Programs that do not support it show the first picture.
 
 use std::fs::File;
 use std::io::BufWriter;
@@ -13,13 +12,13 @@ use crate::export::files::{Unfinished, place, temporary_beside};
 use crate::export::png_file::{mark, rgb};
 use crate::export::rows::RECORD;
 
-/// An APNG file.
+/// Writer of an APNG file.
 pub(super) struct Apng {
     writer: png::Writer<BufWriter<File>>,
     file: Unfinished,
     path: PathBuf,
     transparent: bool,
-    /// The file says what its first picture was made with.
+    /// True once the file has the record of its first picture.
     has_record: bool,
 }
 

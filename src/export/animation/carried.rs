@@ -1,4 +1,4 @@
-//! The look that a GIF or an MP4 carries: what made its first picture.
+//! Records in GIF and MP4 files: the settings of their first picture.
 
 use std::io::{BufReader, Read, Seek, SeekFrom, Write};
 use std::path::Path;
@@ -7,21 +7,21 @@ use crate::export::ReadPictureError;
 use crate::export::files::open_regular;
 use crate::model::MAX_LOOK_BYTES;
 
-/// Before the record in a comment of a GIF: others write comments, too.
+/// Marker before the record in a GIF comment, which distinguishes it from comments of other programs.
 const MARK: &[u8] = b"chiaroscuro\n";
 
-/// Names our box in an MP4: players pass over boxes that they do not know (ISO/IEC 14496-12, 4.2).
+/// UUID of the record's box in an MP4: players skip unknown boxes (ISO/IEC 14496-12, 4.2).
 const BOX: [u8; 16] = *b"chiaroscuro.look";
 
-/// Boxes of a file that are looked at: a film has a handful.
+/// Maximum number of boxes that are examined: a video has a handful.
 const MOST_BOXES: usize = 64;
 
-/// The comment of a GIF that carries a record.
+/// Returns the content of a GIF comment with a record.
 pub(super) fn comment(record: &str) -> Vec<u8> {
     [MARK, record.as_bytes()].concat()
 }
 
-/// Adds a record to the end of an MP4.
+/// Appends a record to the end of an MP4.
 pub(super) fn append(file: &mut impl Write, record: &str) -> std::io::Result<()> {
     let length = 8 + BOX.len() + record.len();
     let Ok(length) = u32::try_from(length) else { return Ok(()) };
@@ -31,7 +31,7 @@ pub(super) fn append(file: &mut impl Write, record: &str) -> std::io::Result<()>
     file.write_all(record.as_bytes())
 }
 
-/// The record of a GIF or an MP4, by the name of the file; none for others.
+/// Reads the record of a GIF or an MP4, by the file's extension; `None` for other files.
 pub(in crate::export) fn read_record(path: &Path) -> Option<Result<Option<String>, ReadPictureError>> {
     let is = |ending: &str| path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending));
     let read: fn(BufReader<std::fs::File>) -> std::io::Result<Option<Vec<u8>>> = match () {
@@ -46,7 +46,7 @@ pub(in crate::export) fn read_record(path: &Path) -> Option<Result<Option<String
     }))
 }
 
-/// The comment with our mark that stands before the first picture.
+/// Finds the comment with the marker before the first picture.
 fn in_gif(file: impl Read) -> std::io::Result<Option<Vec<u8>>> {
     // Records are at the beginning, and files may be of any length.
     let mut file = file.take(4 * MAX_LOOK_BYTES as u64);
@@ -55,7 +55,7 @@ fn in_gif(file: impl Read) -> std::io::Result<Option<Vec<u8>>> {
     if !head.starts_with(b"GIF8") {
         return Err(std::io::Error::other("it is no GIF"));
     }
-    // A table of colours for all pictures: 3 bytes for each of 2^(n + 1).
+    // Global colour table: 3 bytes for each of 2^(n + 1) colours.
     if head[10] & 0x80 != 0 {
         skip(&mut file, 3 << ((head[10] & 7) + 1))?;
     }
@@ -63,7 +63,7 @@ fn in_gif(file: impl Read) -> std::io::Result<Option<Vec<u8>>> {
         let mut one = [0];
         file.read_exact(&mut one).map(|()| one[0])
     };
-    // Extensions begin with 0x21, pictures with 0x2c, and 0x3b is the end.
+    // Extensions begin with 0x21, pictures with 0x2c, and 0x3b is the trailer.
     while byte(&mut file)? == 0x21 {
         let is_comment = byte(&mut file)? == 0xfe;
         let mut text = Vec::new();
@@ -89,7 +89,7 @@ fn skip(file: &mut impl Read, bytes: u64) -> std::io::Result<()> {
     std::io::copy(&mut file.take(bytes), &mut std::io::sink()).map(drop)
 }
 
-/// Our box among those of an MP4.
+/// Finds the record's box among the top-level boxes of an MP4.
 fn in_mp4(mut file: impl Read + Seek) -> std::io::Result<Option<Vec<u8>>> {
     for _ in 0..MOST_BOXES {
         let mut head = [0; 8];
@@ -100,12 +100,12 @@ fn in_mp4(mut file: impl Read + Seek) -> std::io::Result<Option<Vec<u8>>> {
         let mut length = u64::from(u32::from_be_bytes([a, b, c, d]));
         let mut passed = 8;
         if length == 1 {
-            // It is longer than 32 bits say.
+            // The length does not fit in 32 bits.
             let mut long = [0; 8];
             file.read_exact(&mut long)?;
             (length, passed) = (u64::from_be_bytes(long), 16);
         }
-        // 0 means to the end of the file.
+        // A length of 0 extends to the end of the file.
         let Some(left) = length.checked_sub(passed) else { return Ok(None) };
         if kind == *b"uuid" && left >= BOX.len() as u64 {
             let mut name = [0; BOX.len()];
@@ -141,7 +141,7 @@ mod tests {
         append(&mut film, "{\"schema\": 2}").unwrap();
         assert_eq!(read(&film).as_deref(), Some(&b"{\"schema\": 2}"[..]));
         for cut in 0..film.len() {
-            // Cut off anywhere, nothing goes wrong.
+            // A file that is cut off anywhere must not cause a failure.
             drop(in_mp4(std::io::Cursor::new(film[..cut].to_vec())));
         }
         let endless = [0, 0, 0, 8, b'f', b'r', b'e', b'e'].repeat(10_000);

@@ -1,21 +1,21 @@
-//! A PNG file for each picture, which carries how it was made.
+//! Image sequence: a folder with one PNG file per frame, each with its record.
 
 use std::path::{Path, PathBuf};
 
 use super::{AnimationEncoder, AnimationSpec};
 use crate::export::{ExportError, export_png, make_folder};
 
-/// The name of a picture.
+/// Returns the file name of a frame.
 fn name(at: u32) -> String {
     format!("{at:04}.png")
 }
 
-/// The names of so many pictures in a folder.
+/// Returns the paths of all frames in a folder.
 pub fn frame_names(folder: &Path, frames: u32) -> Vec<PathBuf> {
     (0..frames).map(|at| folder.join(name(at))).collect()
 }
 
-/// A folder of pictures.
+/// Writer of an image sequence in a folder.
 pub(super) struct Folder {
     path: PathBuf,
     reel: AnimationSpec,

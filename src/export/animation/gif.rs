@@ -1,4 +1,4 @@
-//! GIF: 256 colours per picture, found for each anew, and no half transparency.
+//! GIF animation: a palette of 256 colours per frame, and binary transparency.
 
 use std::fs::File;
 use std::io::{BufWriter, Write as _};
@@ -10,13 +10,13 @@ use crate::export::ExportError;
 use crate::export::files::{Unfinished, place, temporary_beside};
 use crate::model::made_by;
 
-/// How many pixels the search for colours looks at: every third, which nobody can tell from all of them.
+/// Sampling of pixels for the palette: every third, which is indistinguishable from all of them.
 const SPEED: i32 = 3;
 
-/// Shortest time a picture is shown, in hundredths of a second: viewers slow down what is faster.
+/// Shortest duration of a frame, in hundredths of a second: viewers slow down faster ones.
 const SHORTEST: u64 = 2;
 
-/// A GIF file.
+/// Writer of a GIF file.
 pub(super) struct Gif {
     encoder: gif::Encoder<BufWriter<File>>,
     file: Unfinished,
@@ -41,7 +41,7 @@ impl Gif {
         Ok(Self { encoder, file, path: path.to_owned(), reel: *reel, size: [width, height], written: 0 })
     }
 
-    /// Hundredths of a second until the next picture: whole ones, which add up to the rate.
+    /// Returns the duration of the next frame in hundredths of a second, rounded so that the sum matches the rate.
     fn delay(&self) -> u16 {
         let begins = |frame: u32| (200 * u64::from(frame) / u64::from(self.reel.rate.max(1))).div_ceil(2);
         (begins(self.written + 1) - begins(self.written)).max(SHORTEST) as u16

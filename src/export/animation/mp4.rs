@@ -1,4 +1,4 @@
-//! MP4, by ffmpeg where it is installed: video encoders are large, and some are patented.
+//! MP4 video, encoded by an installed ffmpeg: encoders are large, and some are patented.
 
 use std::ffi::OsStr;
 use std::fs::File;
@@ -13,19 +13,19 @@ use crate::export::files::{Unfinished, place, scratch, temporary_beside};
 use crate::export::png_file::rgb;
 use crate::model::made_by;
 
-/// With x264: little is lost, which smooth shading needs.
+/// Options for x264: low loss, which smooth shading needs.
 const BEST: [&str; 4] = ["-c:v", "libx264", "-crf", "16"];
 
-/// With whatever else encodes MP4.
+/// Options for any other MP4 encoder.
 const NEXT_BEST: [&str; 2] = ["-q:v", "2"];
 
-/// Colours are those of high-definition television.
+/// Colour conversion to BT.709, limited range, 4:2:0.
 const COLOURS: &str = "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p";
 
-/// Most bytes of its words that are read.
+/// Maximum number of bytes read of ffmpeg's error output.
 const MOST_WORDS: u64 = 1 << 16;
 
-/// What becomes of the pictures: players want even edges, so that odd ones are continued by a pixel.
+/// Returns ffmpeg's filter graph. Players require even edges, so odd ones are extended by repeating a pixel.
 fn filter([width, height]: [u32; 2]) -> String {
     let (right, bottom) = (width % 2, height % 2);
     if (right, bottom) == (0, 0) {
@@ -35,18 +35,18 @@ fn filter([width, height]: [u32; 2]) -> String {
     format!("{wider},fillborders=right={right}:bottom={bottom}:mode=smear,{COLOURS}")
 }
 
-/// A running ffmpeg, which ends with whatever wanted its video.
+/// Running ffmpeg process, which is killed when this is dropped.
 struct Ffmpeg {
     child: Child,
     frames: Option<BufWriter<ChildStdin>>,
-    /// What it says: in a file, since a full pipe would stop it.
+    /// Error output of ffmpeg: a file, since a full pipe would block it.
     words: File,
 }
 
 impl Drop for Ffmpeg {
     fn drop(&mut self) {
         self.frames = None;
-        // It has ended already, unless the video is not wanted any more.
+        // It has already ended, unless the video was abandoned.
         if let Err(err) = self.child.kill().and_then(|()| self.child.wait()) {
             log::warn!("ffmpeg could not be ended: {err}");
         }
@@ -54,10 +54,10 @@ impl Drop for Ffmpeg {
 }
 
 impl Ffmpeg {
-    /// Why it stopped, in its own last words if it had any.
+    /// Returns the reason of a failure: ffmpeg's last message, or `otherwise` if there is none.
     fn failure(&mut self, path: &Path, otherwise: &str) -> ExportError {
         self.frames = None;
-        // Before it has ended, it may not have said why.
+        // The message is complete only when the process has ended.
         let status = self.child.wait().map_or_else(|err| err.to_string(), |status| status.to_string());
         let mut said = Vec::new();
         let read =
@@ -69,18 +69,18 @@ impl Ffmpeg {
     }
 }
 
-/// A video that ffmpeg is making.
+/// Writer of an MP4 through ffmpeg.
 pub(super) struct Mp4 {
     ffmpeg: Ffmpeg,
     file: Unfinished,
     path: PathBuf,
     missing: u32,
-    /// What made the first picture.
+    /// Record of the first frame.
     record: String,
 }
 
 impl Mp4 {
-    /// Starts ffmpeg, which is called `program`.
+    /// Starts ffmpeg, whose executable is `program`.
     pub(super) fn create(path: &Path, reel: &AnimationSpec, program: &OsStr) -> Result<Self, ExportError> {
         if reel.transparent {
             let what = "MP4 has no transparency; PNG and GIF have, or leave the background in";
@@ -107,7 +107,7 @@ impl Mp4 {
                 "bt709",
             ])
             .args(if has_x264 { &BEST[..] } else { &NEXT_BEST[..] })
-            // The head comes first, so that players begin before they have it all.
+            // The header comes first, so that players can start before the file is complete.
             .args([
                 "-movflags",
                 "+faststart",
@@ -150,7 +150,7 @@ impl AnimationEncoder for Mp4 {
         if let Some(Err(err)) = ffmpeg.frames.take().map(|mut frames| frames.flush()) {
             return Err(ffmpeg.failure(&path, &err.to_string()));
         }
-        // Without more pictures it comes to its end.
+        // The process ends when its input is closed.
         let ended = ffmpeg.child.wait().map_err(ExportError::writing(&path))?;
         let length = file.as_file().metadata().map_err(ExportError::writing(&path))?.len();
         if !ended.success() || length == 0 {
@@ -173,7 +173,7 @@ mod tests {
 
     const REEL: AnimationSpec = AnimationSpec { size: [3, 2], frames: 2, rate: 24, transparent: false };
 
-    /// A stand-in for ffmpeg: knows its encoders, then does what `script` says with the video's name in $last.
+    /// Creates a stand-in for ffmpeg: it lists its encoders, then runs `script` with the video's name in $last.
     fn stand_in(folder: &Path, script: &str) -> PathBuf {
         let path = folder.join("stand-in");
         let head =
@@ -227,7 +227,7 @@ mod tests {
         assert!(matches!(err, ExportError::NoFfmpeg { .. }), "{err}");
         let transparent = AnimationSpec { transparent: true, ..REEL };
         assert!(Mp4::create(&folder.path().join("a.mp4"), &transparent, "ffmpeg".as_ref()).is_err());
-        // And one that is not wanted any more ends.
+        // An abandoned process is ended.
         let program = stand_in(folder.path(), "cat > \"$last\"");
         let mut short = Mp4::create(&folder.path().join("a.mp4"), &REEL, program.as_os_str()).unwrap();
         short.add(&[0; 24], "").unwrap();

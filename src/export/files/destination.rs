@@ -1,9 +1,9 @@
-//! Where a result goes: to a file, or to standard output.
+//! Destination of a command's result: a file, or standard output.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-/// What is written for standard output is written to a file first, whole or not at all, as all others are.
+/// Destination of an output. For standard output, the result is first written atomically to a temporary file.
 #[derive(Debug)]
 pub struct Destination {
     path: PathBuf,
@@ -11,10 +11,10 @@ pub struct Destination {
 }
 
 impl Destination {
-    /// A file of that name; for `-`, standard output with a file of some ending.
+    /// Creates a destination for a file name; `-` stands for standard output, with the format of an extension.
     ///
     /// # Errors
-    /// When the system has no room for temporary files.
+    /// When no temporary folder can be created.
     pub fn new(name: &Path, ending: &str) -> std::io::Result<Self> {
         if name != Path::new("-") {
             return Ok(Self { path: name.to_owned(), folder: None });
@@ -23,25 +23,25 @@ impl Destination {
         Ok(Self { path: folder.path().join("output").with_extension(ending), folder: Some(folder) })
     }
 
-    /// The file that is to be written.
+    /// Path of the file to be written.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The folder from which what is written sees other files; none of standard output.
+    /// Folder that relative paths in the output refer to; `None` for standard output.
     pub fn folder(&self) -> Option<&Path> {
         self.path.parent().filter(|_| self.folder.is_none())
     }
 
-    /// Whether it is standard output, on which nothing else is said then.
+    /// Returns true if it is standard output, to which nothing else is printed then.
     pub fn is_standard_output(&self) -> bool {
         self.folder.is_some()
     }
 
-    /// The file has been written: standard output gets it.
+    /// Copies the written file to standard output, if that is the destination.
     ///
     /// # Errors
-    /// When what is behind it takes no more.
+    /// When the reader of standard output accepts no more data.
     pub fn hand_over(self) -> std::io::Result<()> {
         if self.is_standard_output() {
             let mut out = std::io::stdout().lock();

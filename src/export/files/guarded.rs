@@ -1,22 +1,22 @@
-//! What the program does to its own files beside writing them.
+//! Management of the program's own files besides writing: folders, quarantine, locks, removal.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// Makes a folder, and those that it is in.
+/// Creates a folder and its missing parents.
 ///
 /// # Errors
-/// When the disk refuses, or something else has that name.
+/// When the file system refuses, or something else has that name.
 pub fn make_folder(path: &Path) -> std::io::Result<()> {
     std::fs::create_dir_all(path)
 }
 
-/// Gives a file another name in its folder, with the time in milliseconds, so that somebody can look at it. Returns the
-/// name.
+/// Quarantines a file: renames it within its folder, with the time in milliseconds, so that it can be examined.
+/// Returns the new path.
 ///
 /// # Errors
-/// When the disk refuses.
+/// When the file system refuses.
 pub fn put_aside(path: &Path) -> std::io::Result<PathBuf> {
     let millis = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_millis();
     let mut name = path.file_name().unwrap_or_default().to_owned();
@@ -26,23 +26,23 @@ pub fn put_aside(path: &Path) -> std::io::Result<PathBuf> {
     Ok(aside)
 }
 
-/// Moves a file of ours within the folder of what is remembered.
+/// Renames one of the program's files within its storage folder.
 ///
 /// # Errors
-/// When the disk refuses.
+/// When the file system refuses.
 pub fn rename(from: &Path, to: &Path) -> std::io::Result<()> {
     std::fs::rename(from, to)
 }
 
-/// Removes a file of ours; that there is none is no error.
+/// Removes one of the program's files; a missing file is not an error.
 pub fn remove(path: &Path) {
     std::fs::remove_file(path).ok();
 }
 
-/// Makes a file that is locked for as long as it is open, whatever ends the process; waits for others that hold it.
+/// Creates a lock file, which is locked while it is open, however the process ends; waits for other holders.
 ///
 /// # Errors
-/// When the file cannot be made. On file systems without locks it is made all the same.
+/// When the file cannot be created. On file systems without locks it is created unlocked.
 pub fn hold_lock(path: &Path) -> std::io::Result<File> {
     let file = File::options().create(true).truncate(false).write(true).open(path)?;
     file.lock().ok();

@@ -1,6 +1,6 @@
-//! The one gate to the disk: nothing else in the program opens files for writing, renames or removes them.
+//! File output: nothing else in the program opens files for writing, renames or removes them.
 //!
-//! Files are written whole or not at all, never in place of what is no file, and say who made them.
+//! Files are written atomically, never replace anything but regular files, and name the program that wrote them.
 
 mod destination;
 mod guarded;

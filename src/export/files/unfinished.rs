@@ -1,5 +1,5 @@
-//! Files that are being written: they are known while the process lives, and told by their lock from those of a process
-//! that was killed.
+//! Temporary files that are being written: listed while the process lives, and distinguished by a lock from those of
+//! a killed process.
 
 use std::fs::{File, TryLockError};
 use std::io::{ErrorKind, Write};
@@ -7,29 +7,29 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How their names begin and end.
+/// Prefix and suffix of the names of temporary files.
 const PREFIX: &str = ".chiaroscuro-";
 const SUFFIX: &str = ".part";
 
-/// Names of a folder that are looked at for files that were abandoned: what takes a hundredth of a second.
+/// Maximum number of directory entries that are searched for abandoned files: takes a hundredth of a second.
 const MOST_NAMES: usize = 10_000;
 
-/// Where locks are not to be had: a file that was not written to for so long is abandoned.
+/// Age since the last write at which a temporary file counts as abandoned, on systems without file locks.
 const ABANDONED_AFTER: Duration = Duration::from_hours(24);
 
-/// How long a process that ends waits for the list.
+/// Longest wait of a terminating process for the list of files.
 const LAST_WAIT: Duration = Duration::from_millis(500);
 
-/// Files that this process is writing.
+/// Temporary files that this process is writing.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// A file that has no name of its own yet. Dropping it removes it.
+/// Temporary file that does not have its final name yet. Dropping it removes it.
 #[derive(Debug)]
 pub(in crate::export) struct Unfinished {
     file: tempfile::NamedTempFile,
 }
 
-/// How such files are called.
+/// Returns a builder for the names of temporary files.
 pub(super) fn named() -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(PREFIX).suffix(SUFFIX);
@@ -37,29 +37,29 @@ pub(super) fn named() -> tempfile::Builder<'static, 'static> {
 }
 
 impl Unfinished {
-    /// A new one in a folder. Those that were abandoned there go.
+    /// Creates a temporary file in a folder, and removes abandoned ones there.
     pub(super) fn begin(folder: &Path) -> std::io::Result<Self> {
         remove_abandoned(folder);
         loop {
             let file = Self::make(folder)?;
-            // Others lock for as long as they look whether a file is abandoned, so this waits for them. Windows keeps
-            // what is locked from other writers of this process, too.
+            // Other processes hold the lock while they check whether a file is abandoned, so this waits for them. On
+            // Windows, a lock would also exclude other writers of this process.
             let locked = cfg!(unix) && file.file.as_file().lock().is_ok();
-            // What was not locked yet when they looked is gone. Where there are no locks, its age tells.
+            // A file that was checked before it was locked has been removed. Without locks, its age protects it.
             if !locked || file.path().exists() {
                 return Ok(file);
             }
         }
     }
 
-    /// A new one, not locked.
+    /// Creates a temporary file, not yet locked.
     fn make(folder: &Path) -> std::io::Result<Self> {
         #[cfg_attr(not(unix), expect(unused_mut, reason = "modes are there on Unix alone"))]
         let mut builder = named();
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt as _;
-            // As files are made that are no temporary ones: the user's mask takes away what it takes away.
+            // The default mode of ordinary files, from which the user's umask is subtracted.
             builder.permissions(std::fs::Permissions::from_mode(0o666));
         }
         let file = builder.tempfile_in(folder)?;
@@ -67,22 +67,22 @@ impl Unfinished {
         Ok(Self { file })
     }
 
-    /// The file.
+    /// Returns the open file.
     pub(in crate::export) fn as_file(&self) -> &File {
         self.file.as_file()
     }
 
-    /// Where it is until it has its name.
+    /// Returns the path of the temporary file.
     pub(in crate::export) fn path(&self) -> &Path {
         self.file.path()
     }
 
-    /// The file once more, for a writer that wants one of its own.
+    /// Opens the file again, for a writer that needs its own handle.
     pub(in crate::export) fn reopen(&self) -> std::io::Result<File> {
         self.file.reopen()
     }
 
-    /// Gives it its name.
+    /// Renames the file to its final name.
     pub(super) fn persist(self, path: &Path) -> std::io::Result<()> {
         let before = self.file.path().to_owned();
         let result = self.file.persist(path).map(drop).map_err(|err| err.error);
@@ -101,17 +101,17 @@ impl Write for Unfinished {
     }
 }
 
-/// A file without a name, which is gone when it is closed.
+/// Creates an unnamed file, which is deleted when it is closed.
 pub(in crate::export) fn scratch() -> std::io::Result<File> {
     tempfile::tempfile()
 }
 
-/// Takes a file off the list; one that was dropped stays there, which is harmless: its name is not used again.
+/// Removes a file from the list. Dropped files stay in it, which is harmless, since their names are not reused.
 fn forget(path: &Path) {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner).retain(|known| known != path);
 }
 
-/// Removes what this process is writing: for a process that is told to end, or that panics.
+/// Removes the temporary files of this process: for termination and panics.
 pub fn remove_unfinished() {
     let begin = Instant::now();
     while begin.elapsed() < LAST_WAIT {
@@ -125,7 +125,7 @@ pub fn remove_unfinished() {
     }
 }
 
-/// Removes what processes have left in a folder that were killed while they wrote.
+/// Removes the temporary files that killed processes have left in a folder.
 pub fn remove_abandoned(folder: &Path) {
     let names = std::fs::read_dir(folder).into_iter().flatten().take(MOST_NAMES).flatten();
     for entry in names {
@@ -138,7 +138,7 @@ pub fn remove_abandoned(folder: &Path) {
     }
 }
 
-/// Removes a file to which nobody writes any more.
+/// Removes a file if no process is writing it any more.
 fn remove_if_abandoned(path: &Path) {
     let Ok(file) = File::open(path) else { return };
     let locked =
@@ -153,7 +153,7 @@ fn remove_if_abandoned(path: &Path) {
         }
     };
     if is_abandoned {
-        // While it is locked: whoever has just made it waits, and finds that it is gone.
+        // Removed while it is locked: a process that has just created it is waiting, and will find it gone.
         std::fs::remove_file(path).ok();
     }
 }

@@ -1,4 +1,4 @@
-//! Files that are written whole or not at all, and never in place of what is no file.
+//! Atomic writing of files, which never replaces anything but regular files.
 
 use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
@@ -7,29 +7,30 @@ use super::unfinished::{self, Unfinished};
 use crate::export::{ExportError, ReadPictureError};
 use crate::fault::{self, Fault};
 
-/// Writes a file whole or not at all: to a temporary file beside it, which then takes its name.
+/// Writes a file atomically: to a temporary file in the same folder, which is then renamed.
 ///
 /// # Errors
-/// When the folder cannot be written to or the disk is full; an older file of that name stays. When what has that name
-/// may not be replaced: a folder, a device, a pipe, a socket, or a file that may only be read.
+/// When the folder cannot be written to or the disk is full; an older file of that name stays. Also when the name
+/// belongs to something that must not be replaced: a folder, device, pipe, socket or read-only file.
 pub fn write_atomically(path: &Path, contents: &[u8]) -> Result<(), ExportError> {
     let mut file = temporary_beside(path)?;
     file.write_all(contents).map_err(ExportError::writing(path))?;
     place(file, path)
 }
 
-/// Keeps the file of a name, if there is one, also under that name with `.bak` behind it, where an older one goes: to
-/// be called before it is written again.
+/// Keeps the present file, if there is one, under its name with `.bak` appended, replacing an older backup: to be
+/// called before the file is rewritten.
 ///
 /// # Errors
-/// When it is no file that may be replaced, or the folder cannot be written to; then nothing has changed.
+/// When the file or the backup's name belongs to something that must not be replaced, or the folder cannot be written
+/// to; then nothing has changed.
 pub fn keep_backup(path: &Path) -> Result<(), ExportError> {
     let failed = ExportError::writing(path);
     let place = place_of(path)?;
     if !place.exists() {
         return Ok(());
     }
-    // A second name of the same file costs nothing, whatever its size; not all file systems have such.
+    // A hard link takes no time, whatever the size; not all file systems support it.
     let second =
         |name: &Path| std::fs::hard_link(&place, name).or_else(|_| std::fs::copy(&place, name).map(drop));
     let mut name = path.file_name().unwrap_or_default().to_owned();
@@ -40,11 +41,11 @@ pub fn keep_backup(path: &Path) -> Result<(), ExportError> {
     kept.into_temp_path().persist(&backup).map_err(|err| failed(err.error))
 }
 
-/// Whether a name says that a file is of one of some kinds, by its ending; what is written under another would be taken
-/// for something else, and might replace it.
+/// Checks that a file has one of the given extensions; under another one it would be taken for a different format,
+/// and might replace such a file.
 ///
 /// # Errors
-/// With `what` where it does not: which kinds there are.
+/// Returns `what`, which lists the supported formats, if it has none of them.
 pub fn check_ending(path: &Path, endings: &[&str], what: &'static str) -> Result<(), ExportError> {
     let is_one = |found: &std::ffi::OsStr| endings.iter().any(|ending| found.eq_ignore_ascii_case(ending));
     if path.extension().is_some_and(is_one) {
@@ -53,27 +54,27 @@ pub fn check_ending(path: &Path, endings: &[&str], what: &'static str) -> Result
     Err(ExportError::Unfit { what, path: path.to_owned() })
 }
 
-/// Whether something can be written under a name: said before the work that is to be written.
+/// Checks that a file can be written under a name, before the work that is to be written begins.
 ///
 /// # Errors
-/// As [`write_atomically`].
+/// Under the conditions of [`write_atomically`].
 pub fn check_writable(path: &Path) -> Result<(), ExportError> {
     temporary_beside(path).map(drop)
 }
 
-/// Where what is written under a name ends up: the name, or what a link of that name points to.
+/// Returns the path that writing to a name replaces: the name itself, or the target of a symbolic link.
 ///
 /// # Errors
-/// When something has that name that may not be replaced.
+/// When the name belongs to something that must not be replaced.
 fn place_of(path: &Path) -> Result<PathBuf, ExportError> {
     let unfit = |what| Err(ExportError::Unfit { what, path: path.to_owned() });
     let link = match std::fs::symlink_metadata(path) {
         Ok(found) if found.is_symlink() => std::fs::read_link(path).map_err(ExportError::writing(path))?,
         Ok(found) => return may_be_replaced(&found).map_or_else(unfit, |()| Ok(path.to_owned())),
-        // What is wrong with the folder shows when a file is made in it.
+        // Problems of the folder show when a file is created in it.
         Err(_) => return Ok(path.to_owned()),
     };
-    // A link says where from the folder that it is in.
+    // A link's target is relative to the link's folder.
     let target = path.parent().unwrap_or(Path::new("")).join(link);
     match std::fs::symlink_metadata(&target) {
         Ok(found) if found.is_symlink() => unfit("it is a link to a link; the name of the file itself helps"),
@@ -83,7 +84,7 @@ fn place_of(path: &Path) -> Result<PathBuf, ExportError> {
     }
 }
 
-/// Whether a new file may take the place of something; else what speaks against it.
+/// Checks that a file may be replaced; otherwise returns the reason why not.
 fn may_be_replaced(found: &std::fs::Metadata) -> Result<(), &'static str> {
     let kind = found.file_type();
     if kind.is_dir() {
@@ -98,24 +99,24 @@ fn may_be_replaced(found: &std::fs::Metadata) -> Result<(), &'static str> {
     Ok(())
 }
 
-/// The folder in which a file is.
+/// Returns the folder that contains a file.
 fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// A file for what will take a name when it is complete.
+/// Creates a temporary file for `path`, in the folder of the final file.
 pub(in crate::export) fn temporary_beside(path: &Path) -> Result<Unfinished, ExportError> {
-    // Known before anything has been made, and not when it is to take its name.
+    // Checked before anything is created, rather than at the final renaming.
     let place = place_of(path)?;
     let failed = |kind: ErrorKind| ExportError::Write { path: path.to_owned(), source: kind.into() };
     if fault::is_on(Fault::FullDisk) {
         return Err(failed(ErrorKind::StorageFull));
     }
-    // The temporary file's own name means nothing to the user: keep the kind of error alone.
+    // The temporary file's name means nothing to the user, so only the kind of error is kept.
     Unfinished::begin(folder_of(&place)).map_err(|err| failed(err.kind()))
 }
 
-/// Opens a file that is one: reading from a pipe or a device might never end.
+/// Opens a regular file; reading from a pipe or a device might never end.
 pub(in crate::export) fn open_regular(path: &Path) -> Result<std::fs::File, ReadPictureError> {
     let failed = |why: &dyn std::fmt::Display| ReadPictureError::new(path, why);
     if !std::fs::metadata(path).map_err(|err| failed(&err))?.is_file() {
@@ -124,21 +125,21 @@ pub(in crate::export) fn open_regular(path: &Path) -> Result<std::fs::File, Read
     std::fs::File::open(path).map_err(|err| failed(&err))
 }
 
-/// Gives a complete file its name.
+/// Gives a complete temporary file its final name.
 pub(in crate::export) fn place(file: Unfinished, path: &Path) -> Result<(), ExportError> {
     let failed = ExportError::writing(path);
     let place = place_of(path)?;
-    // Otherwise a crash just after the rename could leave an empty file under the old name.
+    // Without this, a crash just after the rename could leave an empty file under the old name.
     file.as_file().sync_all().map_err(&failed)?;
     if let Ok(old) = std::fs::metadata(&place) {
-        // Shares of other systems have no such thing, and hold files all the same.
+        // Network shares may not support permissions, but hold files all the same.
         file.as_file()
             .set_permissions(old.permissions())
             .inspect_err(|err| log::warn!("{}: who may read it could not be kept: {err}", place.display()))
             .ok();
     }
     file.persist(&place).map_err(&failed)?;
-    // The new name is on the disk when the folder is. Some systems cannot say so, and it is there all the same.
+    // Syncing the folder makes the new name durable. Some systems cannot do that, and the name is there all the same.
     std::fs::File::open(folder_of(&place)).and_then(|folder| folder.sync_all()).ok();
     Ok(())
 }
@@ -194,7 +195,7 @@ mod tests {
         }
         assert!(std::fs::symlink_metadata(path("socket")).unwrap().file_type().is_socket());
         assert_eq!(std::fs::read(path("kept.txt")).unwrap(), b"kept");
-        // The real thing, as it is on every system, and nothing is tried that could replace it.
+        // A real device on every Unix system; the test does nothing that could replace it.
         assert!(place_of(Path::new("/dev/null")).is_err());
     }
 

@@ -1,4 +1,4 @@
-//! Text and shapes that are laid over the rows of a picture, whatever its numbers are.
+//! Layer of text and shapes that is composited over the rows of a picture, in any number format.
 
 use std::sync::LazyLock;
 
@@ -7,43 +7,43 @@ use ab_glyph::{Font as _, FontRef, ScaleFont as _, point};
 use crate::export::Rows;
 use crate::model::{Depth, ImageSpec, linear_from_srgb};
 
-/// The file of the typeface; its licence lies beside it.
+/// Font file; its licence is in the same folder.
 static FONT: &[u8] = include_bytes!("../../../assets/fonts/Ubuntu-Light.ttf");
 
-/// The typeface of the window. None if what the package holds is no font.
+/// Font of the window. `None` if the embedded file is not a valid font.
 static TYPEFACE: LazyLock<Option<FontRef<'static>>> = LazyLock::new(|| FontRef::try_from_slice(FONT).ok());
 
-/// Ink that is read on dark pictures.
+/// Ink colour that is legible on dark pictures.
 pub(super) const BRIGHT: [u8; 3] = [0xe8, 0xec, 0xf2];
-/// What is around it, so that it is read on bright ones.
+/// Outline colour that keeps the ink legible on bright pictures.
 pub(super) const DARK: [u8; 3] = [0x0c, 0x0d, 0x10];
 
-/// A rectangle of one ink that covers more or less of its pixels.
+/// Rectangle of one ink with a coverage mask.
 #[derive(Debug, Clone, PartialEq)]
 struct Dab {
     left: i64,
     top: i64,
     width: usize,
-    /// Row by row: 255 covers.
+    /// Coverage row by row, from 0 to 255 (opaque).
     coverage: Vec<u8>,
     ink: [u8; 3],
 }
 
-/// What is laid over a picture, in pixels from its top left corner.
+/// Shapes and text to be composited over a picture, in pixels from its top left corner.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Layer {
     dabs: Vec<Dab>,
 }
 
 impl Layer {
-    /// Fills a rectangle.
+    /// Fills a rectangle with an ink, at least one pixel wide and high.
     pub(super) fn fill(&mut self, [left, top]: [f64; 2], [width, height]: [f64; 2], ink: [u8; 3], alpha: u8) {
         let (left, top) = (left.round() as i64, top.round() as i64);
         let (width, height) = (width.round().max(1.0) as usize, height.round().max(1.0) as usize);
         self.dabs.push(Dab { left, top, width, coverage: vec![alpha; width * height], ink });
     }
 
-    /// How wide a line of text is.
+    /// Returns the width of a line of text, in pixels.
     pub(super) fn width(words: &str, height: f64) -> f64 {
         let Some(font) = &*TYPEFACE else { return 0.0 };
         let font = font.as_scaled(height as f32);
@@ -56,8 +56,8 @@ impl Layer {
         f64::from(advances.sum::<f32>())
     }
 
-    /// Writes a line of text `height` pixels high, with an edge that is read on any picture. `share`: which part of the text
-    /// is at `at`, from its left and its top: 0 … 1.
+    /// Writes a line of text `height` pixels high, with an outline that is legible on any picture. `share` selects
+    /// the point of the text's box that lies at `at`: fractions from its left and its top, 0 to 1.
     pub(super) fn write(&mut self, words: &str, at: [f64; 2], share: [f64; 2], height: f64) {
         let Some(font) = &*TYPEFACE else { return };
         let left = at[0] - share[0] * Self::width(words, height);
@@ -98,7 +98,7 @@ impl Layer {
         self.dabs.extend(letters);
     }
 
-    /// Lays it over rows of a picture, of which the first is row `first`.
+    /// Composites the layer over rows of a picture, starting at row `first` of the picture.
     pub fn lay_over(&self, shot: &ImageSpec, first: usize, rows: &mut Rows) {
         let width = shot.size[0] as usize;
         for dab in &self.dabs {
@@ -142,7 +142,7 @@ impl Layer {
     }
 }
 
-/// An ink over a colour with straight alpha (Porter and Duff 1984).
+/// Composites an ink over a colour with straight alpha (Porter and Duff 1984).
 fn over([r, g, b, below]: [f64; 4], ink: [f64; 3], alpha: f64) -> [f64; 4] {
     let left = below * (1.0 - alpha);
     let whole = alpha + left;
@@ -153,7 +153,7 @@ fn over([r, g, b, below]: [f64; 4], ink: [f64; 3], alpha: f64) -> [f64; 4] {
     [mix(r, ink[0]), mix(g, ink[1]), mix(b, ink[2]), whole]
 }
 
-/// The same where colours are multiplied by their alpha.
+/// Composites an ink over a colour with premultiplied alpha.
 fn over_premultiplied([r, g, b, below]: [f64; 4], ink: [f64; 3], alpha: f64) -> [f64; 4] {
     let mix = |before: f64, ink: f64| ink * alpha + before * (1.0 - alpha);
     [mix(r, ink[0]), mix(g, ink[1]), mix(b, ink[2]), mix(below, 1.0)]
@@ -167,7 +167,7 @@ mod tests {
     fn shapes_cover_their_pixels_and_no_others_in_bands_too() {
         let mut layer = Layer::default();
         layer.fill([1.0, 1.0], [2.0, 2.0], [255, 0, 0], 255);
-        // Partly outside.
+        // Partly outside the picture.
         layer.fill([-3.0, 3.0], [4.0, 9.0], [0, 255, 0], 255);
         let shot = ImageSpec::new([4, 4]);
         let mut whole = Rows::Bytes(vec![0; 64]);

@@ -1,22 +1,22 @@
-//! Which colour stands for which value, or for which label.
+//! Legend of a picture: a colour bar with values, or the colours of labels.
 
 use super::layer::{BRIGHT, DARK, Layer};
 use crate::data::Volume;
 use crate::model::{Settings, srgb_from_linear};
 
-/// Height of the bar of colours, as a share of the picture's.
+/// Height of the colour bar, relative to the picture's height.
 const BAR: f64 = 0.4;
 
-/// Labels that are named: more would be wider than the picture is for.
+/// Maximum number of labels in the legend, so that it stays small beside the picture.
 const MOST_LABELS: usize = 12;
 
-/// Numbers beside the bar, at least.
+/// Minimum number of ticks beside the colour bar.
 const TICKS: f64 = 4.0;
 
-/// What is less opaque than this is not seen, and not in the legend.
+/// Opacity below which values and labels count as invisible, and are left out of the legend.
 const LEAST_OPACITY: f64 = 0.005;
 
-/// Draws it at the right of a picture.
+/// Draws the legend at the right of a picture.
 pub(super) fn draw(layer: &mut Layer, settings: &Settings, volume: &Volume, size: [f64; 2], letters: f64) {
     if settings.labels.is_empty() {
         values(layer, settings, volume, size, letters);
@@ -29,7 +29,7 @@ fn bytes(srgb: [f64; 3]) -> [u8; 3] {
     srgb.map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8)
 }
 
-/// The values that are seen: from the first to the last that is more than a trace.
+/// Returns the range of visible values: from the first to the last whose opacity exceeds the threshold.
 fn seen(settings: &Settings, volume: &Volume) -> Option<[f64; 2]> {
     let range = settings.shown_range(&volume.ranges());
     const STEPS: usize = 1024;
@@ -40,7 +40,7 @@ fn seen(settings: &Settings, volume: &Volume) -> Option<[f64; 2]> {
     (last > first).then(|| [value(first), value(last)])
 }
 
-/// Round numbers between two values.
+/// Returns round numbers between two values, and their number of decimals.
 fn ticks([low, high]: [f64; 2]) -> (Vec<f64>, usize) {
     let rough = (high - low) / TICKS;
     let power = 10f64.powf(rough.log10().floor());
@@ -48,7 +48,7 @@ fn ticks([low, high]: [f64; 2]) -> (Vec<f64>, usize) {
     let decimals = (-step.log10().floor()).clamp(0.0, 9.0) as usize;
     let first = (low / step).ceil() as i64;
     let last = (high / step).floor() as i64;
-    // Ticks are few: a step is at least a tenth of a quarter.
+    // Bounded: a step exceeds a tenth of a quarter of the range.
     ((first..=last.min(first + 50)).map(|at| at as f64 * step).collect(), decimals)
 }
 
@@ -57,7 +57,7 @@ fn values(layer: &mut Layer, settings: &Settings, volume: &Volume, [width, heigh
     let (tall, wide) = ((height * BAR).round(), (letters * 0.9).round());
     let (numbers, decimals) = ticks([low, high]);
     let text = |value: &f64| match decimals {
-        // Zeros alone would say nothing.
+        // Fixed notation would show nothing but zeros.
         9.. => format!("{value:.1e}"),
         _ => format!("{value:.decimals$}"),
     };

@@ -1,5 +1,4 @@
-//! What is written over an exported picture so that it speaks for itself: a scale bar, which side of a body is where, and
-//! which colour stands for which value.
+//! Marks over an exported picture that make it self-explanatory: a scale bar, orientation letters, and a legend.
 
 mod layer;
 mod legend;
@@ -12,23 +11,24 @@ pub use self::sides::{SIDES, sides, sides_along};
 use crate::data::Volume;
 use crate::model::{ImageSpec, Settings};
 
-/// Height of letters as a share of a picture's shorter edge: as in figures of journals, which are read at a third of a page.
+/// Height of letters relative to a picture's shorter edge: as in journal figures, which are printed at a third of a
+/// page.
 const LETTERS: f64 = 1.0 / 32.0;
 
-/// The lowest letters that are read, in pixels.
+/// Smallest legible height of letters, in pixels.
 const LEAST: f64 = 11.0;
 
-/// Height of letters in a picture.
+/// Returns the height of letters for a picture, in pixels.
 fn letter_height([width, height]: [u32; 2]) -> f64 {
     (f64::from(width.min(height)) * LETTERS).max(LEAST)
 }
 
-/// What is to be laid over a picture of a volume.
+/// Returns the layer of marks for a picture of a volume.
 pub fn marks(shot: &ImageSpec, settings: &Settings, volume: &Volume) -> Layer {
     marks_of_size(shot, shot.size, settings, volume)
 }
 
-/// What is to be laid over a picture of a volume, over a copy of it that has another number of pixels, and looks the same.
+/// Returns the layer of marks for a copy of a picture at another resolution, with the same appearance.
 pub fn marks_of_size(shot: &ImageSpec, size: [u32; 2], settings: &Settings, volume: &Volume) -> Layer {
     let mut layer = Layer::default();
     let scale = f64::from(size[1]) / f64::from(shot.size[1].max(1));
@@ -50,7 +50,7 @@ pub fn marks_of_size(shot: &ImageSpec, size: [u32; 2], settings: &Settings, volu
     layer
 }
 
-/// A sheet of pictures side by side, each with its name below; see [`Sheet::add`].
+/// Contact sheet: pictures in a grid, each with its name below; see [`Sheet::add`].
 #[derive(Debug)]
 pub struct Sheet {
     tile: [u32; 2],
@@ -64,7 +64,7 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// A sheet for so many pictures of a size, as square as it can be.
+    /// Creates a sheet for `count` pictures of equal size, in a grid that is as square as possible.
     pub fn new(count: u32, tile: [u32; 2]) -> Self {
         let columns = f64::from(count.max(1)).sqrt().ceil() as u32;
         let rows = count.max(1).div_ceil(columns);
@@ -72,12 +72,12 @@ impl Sheet {
         let margin = tile[0] / 32;
         let below = (letters * 1.6) as u32;
         let size = [columns * (tile[0] + margin) + margin, rows * (tile[1] + margin + below) + margin];
-        // The dark of the window behind its pictures.
+        // Background colour behind the window's pictures.
         let shown = [0x14, 0x16, 0x1a, 0xff].repeat((size[0] * size[1]) as usize);
         Self { tile, columns, size, margin, letters, shown, layer: Layer::default(), count: 0 }
     }
 
-    /// Adds a picture of sRGB bytes with its name.
+    /// Adds a picture of sRGB bytes, with its name.
     pub fn add(&mut self, name: &str, picture: &[u8]) {
         let [width, height] = self.tile;
         let (column, row) = (self.count % self.columns, self.count / self.columns);
@@ -98,7 +98,7 @@ impl Sheet {
         self.layer.write(&name, middle, [0.5, 0.0], self.letters);
     }
 
-    /// The sheet, and its size.
+    /// Returns the size and the RGBA bytes of the finished sheet.
     pub fn finish(self) -> ([u32; 2], Vec<u8>) {
         let mut rows = crate::export::Rows::Bytes(self.shown);
         self.layer.lay_over(&ImageSpec::new(self.size), 0, &mut rows);
@@ -118,7 +118,7 @@ mod tests {
     use crate::model::Marks;
     use crate::model::auto::first_settings;
 
-    /// Which columns and rows of a picture are written over.
+    /// Returns the bounding box of the pixels that the marks cover: left, top, right, bottom.
     fn written(marks: Marks) -> Option<[usize; 4]> {
         let volume = builtin("chair", Some(16)).unwrap();
         let settings = first_settings(&volume, &Histogram::of(&volume));
@@ -139,7 +139,7 @@ mod tests {
         assert!(left < 20 && right < 200 && top > 240 && bottom < 300, "{left} {top} {right} {bottom}");
         let [left, top, right, bottom] = written(Marks { legend: true, ..Marks::default() }).unwrap();
         assert!(left > 250 && right < 400 && top > 40 && bottom < 290, "{left} {top} {right} {bottom}");
-        // Nobody knows which side of a chair is its right one.
+        // A built-in chair has no anatomical orientation.
         assert_eq!(written(Marks { letters: true, ..Marks::default() }), None);
     }
 
@@ -149,7 +149,7 @@ mod tests {
         let settings = first_settings(&volume, &Histogram::of(&volume));
         let marks = Marks { scale_bar: true, legend: true, ..Marks::default() };
         let shot = ImageSpec { marks, ..ImageSpec::new([1600, 1200]) };
-        // Shares of the picture that are written over.
+        // Bounding box of the marks, relative to the picture's size.
         let written = |size: [u32; 2]| {
             let mut rows = Rows::Bytes(vec![0; (size[0] * size[1] * 4) as usize]);
             let layer = super::marks_of_size(&shot, size, &settings, &volume);

@@ -1,26 +1,27 @@
-//! A bar that says how long things are.
+//! Scale bar: a round length, and its label.
 
 use super::layer::{BRIGHT, DARK, Layer};
 
-/// The bar is no longer than this share of the picture's width.
+/// Maximum length of the bar, relative to the picture's width.
 const LONGEST: f64 = 0.25;
 
-/// A length that fits, and its name in the unit that suits it.
+/// Round length that fits into a picture, with its label in a suitable unit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ScaleBar {
-    /// In millimetres, or in voxels where nobody knows how large these are.
+    /// Length in millimetres, or in voxels if their size is unknown.
     pub length_mm: f64,
-    /// The length in words.
+    /// Label of the length, with its unit.
     pub words: String,
 }
 
-/// The bar for a picture of a width at the middle of the view; none where that is no length.
+/// Returns the scale bar for a picture whose width at the view's target is given; `None` if the width is not positive
+/// and finite.
 pub fn scale_bar(width_mm: f64, has_unknown_scale: bool) -> Option<ScaleBar> {
     let longest_mm = LONGEST * width_mm;
     if !(longest_mm.is_finite() && longest_mm > 0.0) {
         return None;
     }
-    // 1, 2 or 5 times a power of ten.
+    // Chooses 1, 2 or 5 times a power of ten.
     let power = 10f64.powf(longest_mm.log10().floor());
     let step = [5.0, 2.0, 1.0].into_iter().find(|step| step * power <= longest_mm).unwrap_or(1.0);
     let length_mm = step * power;
@@ -33,12 +34,12 @@ pub fn scale_bar(width_mm: f64, has_unknown_scale: bool) -> Option<ScaleBar> {
         length if length >= 1e-3 => (length * 1e3, "µm"),
         length => (length * 1e6, "nm"),
     };
-    // At most one digit that is not zero: no rounding shows.
+    // There is at most one non-zero digit, so rounding is not visible.
     Some(ScaleBar { length_mm, words: format!("{} {unit}", (value * 1e3).round() / 1e3) })
 }
 
 impl ScaleBar {
-    /// Draws it at the bottom left, so many pixels long.
+    /// Draws the bar at the bottom left, `pixels` long.
     pub(super) fn draw(&self, layer: &mut Layer, pixels: f64, [_, height]: [f64; 2], letters: f64) {
         let (left, bottom) = (letters, height - letters);
         let thick = (letters / 8.0).round().max(1.0);

@@ -1,18 +1,19 @@
-//! The sides of a volume, and which of them lies where in a picture: right and left are never guessed.
+//! Orientation of a volume's sides in a picture. Left and right come from the file's orientation and are never
+//! guessed.
 
 use glam::DVec3;
 
 use super::layer::Layer;
 use crate::model::Camera;
 
-/// A side is named where it lies in that direction by at least this share: an edge that is 17° off says one side, and
-/// one between two says both.
+/// Least direction cosine at which a side is named: an edge that is 17° off names one side, and one between two sides
+/// names both.
 const LEAST: f64 = 0.3;
 
-/// An edge names no more sides than this.
+/// Maximum number of sides named at one edge.
 const MOST: usize = 2;
 
-/// Directions of the scene, and what is written there: signs, or for bodies what lies there.
+/// Directions of scene space with their labels: signed axes, or anatomical letters.
 pub const SIDES: [(DVec3, [&str; 2]); 6] = [
     (DVec3::X, ["+x", "R"]),
     (DVec3::NEG_X, ["−x", "L"]),
@@ -22,7 +23,7 @@ pub const SIDES: [(DVec3, [&str; 2]); 6] = [
     (DVec3::NEG_Z, ["−z", "I"]),
 ];
 
-/// The sides of a body that lie in a direction of its scene, the most first.
+/// Returns the anatomical letters of a direction in scene space, the nearest first.
 fn towards(direction: DVec3) -> String {
     let mut found: Vec<(f64, &str)> = SIDES
         .iter()
@@ -33,19 +34,19 @@ fn towards(direction: DVec3) -> String {
     found.into_iter().take(MOST).map(|(_, letter)| letter).collect()
 }
 
-/// What of a body lies to the right, to the left, at the top and at the bottom of a picture.
+/// Returns the anatomical letters at the right, left, top and bottom of a picture.
 pub fn sides(camera: &Camera) -> [String; 4] {
     let view = camera.scene_from_view();
     sides_along(view.x_axis, view.y_axis)
 }
 
-/// Sides of a body at the right, the left, the top and the bottom of something flat, whose right and whose top lie in
-/// these directions of scene space (of length 1).
+/// Returns the anatomical letters at the right, left, top and bottom of a plane whose `right` and `up` directions are
+/// unit vectors in scene space.
 pub fn sides_along(right: DVec3, up: DVec3) -> [String; 4] {
     [right, -right, up, -up].map(towards)
 }
 
-/// Writes them at the edges of a picture.
+/// Draws the letters at the edges of a picture.
 pub(super) fn draw(layer: &mut Layer, camera: &Camera, [width, height]: [f64; 2], letters: f64) {
     let [right, left, top, bottom] = sides(camera);
     let edge = letters / 2.0;
@@ -62,7 +63,7 @@ mod tests {
     use crate::data::load::{LoadControl, LoadOptions, load};
     use crate::model::{SceneAxis, StandardView};
 
-    /// A volume of 8 × 9 × 10 voxels whose axes run as a header says.
+    /// Reads a volume of 8 × 9 × 10 voxels with the axes of an NRRD header.
     fn volume(space: &str, directions: [[i32; 3]; 3]) -> Volume {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("head.nrrd");
@@ -75,7 +76,8 @@ mod tests {
         load(&path, &LoadOptions::default(), &LoadControl::new()).unwrap()
     }
 
-    /// The letter of a direction in the words of a header: right-anterior-superior, or the opposite where it says so.
+    /// Returns the letter of an axis direction in the space of an NRRD header (right-anterior-superior, or with
+    /// opposite axes).
     fn letter_of(space: &str, direction: [i32; 3]) -> &'static str {
         let words: Vec<&str> = space.split('-').collect();
         let axis = direction.iter().position(|&c| c != 0).unwrap();
@@ -116,7 +118,7 @@ mod tests {
                             let (from, to) = (place(middle - step), place(middle + step));
                             let (dx, dy) = (to.0 - from.0, to.1 - from.1);
                             if dx * dx + dy * dy < 1.0 {
-                                // It runs along the line of sight.
+                                // The axis is parallel to the line of sight.
                                 continue;
                             }
                             let edge = match (dx.abs() > dy.abs(), dx > 0.0, dy > 0.0) {
@@ -134,7 +136,8 @@ mod tests {
         }
     }
 
-    /// Heads with an L on their left, written by other programs with other axes first and in other directions.
+    /// Reads phantoms of heads with an L on their left side, written by other programs with permuted and flipped
+    /// axes.
     #[test]
     fn the_left_of_a_head_is_named_so_in_every_format() {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/oracle/phantom");
@@ -142,7 +145,7 @@ mod tests {
         for entry in std::fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
             let name = path.file_name().unwrap().to_string_lossy().into_owned();
-            // Bare numbers are opened by their description.
+            // Raw voxel files are opened through their headers.
             if name.rsplit('.').next() == Some("bin") {
                 continue;
             }
@@ -158,7 +161,7 @@ mod tests {
                 .map(|index| scene.scene_from_index.transform_point3(index))
                 .collect();
             let middle = marked.iter().sum::<DVec3>() / marked.len() as f64;
-            // The side of the cube that it lies behind.
+            // Face of the orientation cube in front of it.
             let (_, names) =
                 SIDES.into_iter().max_by(|a, b| a.0.dot(middle).total_cmp(&b.0.dot(middle))).unwrap();
             assert_eq!(names, ["−x", "L"], "{name}");
@@ -176,7 +179,7 @@ mod tests {
 
     #[test]
     fn faces_are_seen_as_a_mirror_does_not_show_them() {
-        // From the front, a patient's right is on the left; from above the head, the face at the bottom.
+        // From the front, a patient's right is on the left; from above the head, the face is at the bottom.
         let mut camera = Camera::default();
         camera.look_from(StandardView::PlusY);
         assert_eq!(sides(&camera), ["L", "R", "S", "I"]);

@@ -1,7 +1,7 @@
-//! `MetaImage`: a header in text, and the voxels behind it, as they are or in zlib.
+//! `MetaImage` writer: a text header, followed by the voxels, uncompressed or in zlib.
 //!
-//! After <https://itk.org/Wiki/MetaIO/Documentation>. World space is left-posterior-superior millimetres. What the format
-//! has no field for has the tag of DICOM as its name, as programs of ITK write it.
+//! Format: <https://itk.org/Wiki/MetaIO/Documentation>. World space is left-posterior-superior millimetres. Metadata
+//! without a field in the format are named by their DICOM tags, as programs based on ITK do.
 
 use std::io::{Result, Write};
 
@@ -13,13 +13,13 @@ use super::outgoing::Outgoing;
 use crate::data::{VoxelType, single_line};
 use crate::model::made_by;
 
-/// The field that says which program made a file: Software Versions of DICOM.
+/// Field with the name of the writing program: the tag of DICOM's Software Versions.
 const MADE_BY_FIELD: &str = "0018|1020";
 
-/// Characters of the longest value that `MetaIO` reads.
+/// Length of the longest value that `MetaIO` reads, in characters.
 const LONGEST_VALUE: usize = 200;
 
-/// Counts what is written to it.
+/// Writer that only counts bytes.
 struct Count(u64);
 
 impl Write for Count {
@@ -33,10 +33,10 @@ impl Write for Count {
     }
 }
 
-/// Writes a volume.
+/// Writes a volume as `MetaImage`.
 pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>, is_compressed: bool) -> Result<()> {
     let size = if is_compressed {
-        // The length stands before them, and they need not be in memory: they are compressed twice.
+        // The compressed size precedes the voxels; compressing twice avoids keeping them in memory.
         let mut count = Count(0);
         write_compressed(&mut count, volume)?;
         Some(count.0)
@@ -53,7 +53,7 @@ fn write_compressed(out: &mut dyn Write, volume: &Outgoing<'_>) -> Result<()> {
     encoder.finish().map(drop)
 }
 
-/// The header of voxels that have so many bytes when they are compressed.
+/// Returns the header; `compressed` is the size of the compressed voxels in bytes.
 fn header(volume: &Outgoing<'_>, compressed: Option<u64>) -> String {
     let mut text = String::new();
     let mut add = |field: &str, value: &str| {
@@ -91,7 +91,8 @@ fn header(volume: &Outgoing<'_>, compressed: Option<u64>) -> String {
     text
 }
 
-/// The fields that say where voxels lie. What is not known has the words that `MetaIO` has for that.
+/// Adds the fields for the position and orientation of the voxels. Unknown properties get the values that `MetaIO`
+/// defines for that.
 fn add_place(add: &mut impl FnMut(&str, &str), volume: &Outgoing<'_>) {
     let lps_from_ras = DAffine3::from_mat3(DMat3::from_diagonal(DVec3::new(-1.0, -1.0, 1.0)));
     let DAffine3 { matrix3, translation } = lps_from_ras * volume.world_from_index();
@@ -111,12 +112,12 @@ fn words(all: &[String; 3]) -> String {
     all.join(" ")
 }
 
-/// A number, without the sign that a zero may have.
+/// Formats a number, without the sign of a negative zero.
 fn plus_zero(number: f64) -> String {
     (number + 0.0).to_string()
 }
 
-/// The word for a number type.
+/// Returns the format's name of a voxel type.
 fn element_type(voxel_type: VoxelType) -> &'static str {
     match voxel_type {
         VoxelType::U8 => "MET_UCHAR",

@@ -1,7 +1,8 @@
-//! `NIfTI`: a binary header, an extension that says who made the file, and the voxels, as they are or in gzip.
+//! `NIfTI` writer: a binary header, an extension with the program mark, and the voxels, uncompressed or in gzip.
 //!
-//! After `nifti1.h` and `nifti2.h` (<https://nifti.nimh.nih.gov>): NIfTI-1, or NIfTI-2 where an axis has more voxels than
-//! 16 bits count. World space is right-anterior-superior millimetres; where no body is known, distances alone are said.
+//! Format: `nifti1.h` and `nifti2.h` (<https://nifti.nimh.nih.gov>): NIfTI-1, or NIfTI-2 if an axis has more voxels
+//! than 16 bits can count. World space is right-anterior-superior millimetres; without an anatomical orientation,
+//! only distances are written.
 
 use std::io::{Result, Write};
 
@@ -13,36 +14,36 @@ use super::outgoing::Outgoing;
 use crate::data::{Meaning, Modality, VoxelType};
 use crate::model::made_by;
 
-/// The kind of an extension that is text (`NIFTI_ECODE_COMMENT`).
+/// Extension code of plain text (`NIFTI_ECODE_COMMENT`).
 const COMMENT: u32 = 6;
 
-/// Bytes of both headers, which they begin with.
+/// Sizes of the NIfTI-1 and NIfTI-2 headers in bytes, which are also their first field.
 const BYTES_1: usize = 348;
 const BYTES_2: usize = 540;
 
-/// Bytes between a header and its first extension; the first of them says that there is one.
+/// Bytes between a header and its first extension; the first byte is non-zero if there is one.
 const EXTENDER_BYTES: usize = 4;
 
-/// Bytes of an extension before its text: its length, and its kind.
+/// Bytes before the text of an extension: its size and its code.
 const BEFORE_TEXT: usize = 8;
 
-/// Lengths in millimetres (`NIFTI_UNITS_MM`).
+/// Unit code of millimetres (`NIFTI_UNITS_MM`).
 const UNITS_MM: u8 = 2;
 
-/// The place comes from the scanner (`NIFTI_XFORM_SCANNER_ANAT`).
+/// Transform code of scanner coordinates (`NIFTI_XFORM_SCANNER_ANAT`).
 const SCANNER: u8 = 1;
 
-/// Numbers of labels (`NIFTI_INTENT_LABEL`).
+/// Intent code of label maps (`NIFTI_INTENT_LABEL`).
 const LABELS: i16 = 1002;
 
-/// Cosine of axes up to which a turn is written beside the matrix, for programs that know nothing else: what is a
-/// thousandth askew is half a voxel off after five hundred.
+/// Largest cosine between axes at which a quaternion is written beside the matrix, for programs that read nothing
+/// else: a shear of a thousandth amounts to half a voxel after five hundred.
 const MOST_ASKEW: f64 = 1e-3;
 
-/// Bytes of a description, the last of them zero.
+/// Maximum length of the description in bytes, without the terminating zero.
 const DESCRIPTION: usize = 79;
 
-/// Writes a volume.
+/// Writes a volume as `NIfTI`.
 pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>, is_gzip: bool) -> Result<()> {
     if !is_gzip {
         out.write_all(&beginning(volume))?;
@@ -54,12 +55,12 @@ pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>, is_gzip: bool) -
     encoder.finish().map(drop)
 }
 
-/// All that stands before the voxels.
+/// Returns everything that precedes the voxels.
 fn beginning(volume: &Outgoing<'_>) -> Vec<u8> {
     let comment = comment();
     let is_long = volume.dims().iter().any(|&n| i16::try_from(n).is_err());
     let header = if is_long { BYTES_2 } else { BYTES_1 };
-    // Voxels begin at a multiple of 16, as NIfTI-1 asks; extensions have such lengths.
+    // NIfTI-1 requires voxels to begin at a multiple of 16; sizes of extensions are multiples of 16 too.
     let start = (header + EXTENDER_BYTES + comment.len()).next_multiple_of(16);
     let mut bytes = if is_long { second(volume, start) } else { first(volume, start) };
     bytes.extend([1, 0, 0, 0]);
@@ -68,7 +69,7 @@ fn beginning(volume: &Outgoing<'_>) -> Vec<u8> {
     bytes
 }
 
-/// The extension that says who made the file.
+/// Returns the extension with the program mark.
 fn comment() -> Vec<u8> {
     let text = made_by();
     let length = (BEFORE_TEXT + text.len()).next_multiple_of(16);
@@ -79,20 +80,20 @@ fn comment() -> Vec<u8> {
     bytes
 }
 
-/// What both headers say, in their own widths.
+/// Contents common to both headers, which store them in different widths.
 struct Facts {
-    /// The code of the number type.
+    /// Code of the voxel type.
     kind: i16,
     bits: i16,
-    /// Whether the volume lies in a body.
+    /// True if the volume has an anatomical orientation.
     is_placed: bool,
-    /// Whether its axes are as good as square to each other, so that a turn says where it lies, too.
+    /// True if its axes are nearly orthogonal, so that a quaternion describes the orientation as well.
     is_square: bool,
-    /// -1 where the grid is mirrored.
+    /// Determinant sign (`qfac`): -1 for a mirrored grid, otherwise 1.
     mirror: f64,
     spacing: [f64; 3],
     turn: [f64; 3],
-    /// Rows of the matrix.
+    /// Rows of the affine matrix.
     rows: [[f64; 4]; 3],
     units: u8,
     intent: i16,
@@ -142,7 +143,7 @@ impl Facts {
     }
 }
 
-/// The code of a number type, and its bits.
+/// Returns the format's code of a voxel type, and its number of bits.
 fn type_code(voxel_type: VoxelType) -> [i16; 2] {
     match voxel_type {
         VoxelType::U8 => [2, 8],
@@ -156,7 +157,7 @@ fn type_code(voxel_type: VoxelType) -> [i16; 2] {
     }
 }
 
-/// How the data were acquired, in words that also name the modality, as far as there is room.
+/// Returns the description of the acquisition, including the modality, truncated to the field's length.
 fn description(volume: &Outgoing<'_>) -> Vec<u8> {
     let hints = volume.hints();
     let acquisition = hints.acquisition().unwrap_or_default();
@@ -176,7 +177,7 @@ fn description(volume: &Outgoing<'_>) -> Vec<u8> {
     text.as_bytes()[..text.floor_char_boundary(DESCRIPTION)].to_vec()
 }
 
-/// A header that is filled at places.
+/// Header buffer with fields at fixed offsets.
 struct Filled(Vec<u8>);
 
 impl Filled {
@@ -196,7 +197,7 @@ impl Filled {
     }
 }
 
-/// The header of NIfTI-1.
+/// Returns the NIfTI-1 header; `start` is the offset of the voxels.
 fn first(volume: &Outgoing<'_>, start: usize) -> Vec<u8> {
     let facts = Facts::of(volume);
     let [x, y, z] = facts.spacing;
@@ -225,7 +226,7 @@ fn first(volume: &Outgoing<'_>, start: usize) -> Vec<u8> {
     header.0
 }
 
-/// The header of NIfTI-2.
+/// Returns the NIfTI-2 header; `start` is the offset of the voxels.
 fn second(volume: &Outgoing<'_>, start: usize) -> Vec<u8> {
     let facts = Facts::of(volume);
     let [x, y, z] = facts.spacing;

@@ -1,7 +1,8 @@
-//! NRRD: a header in text, and the voxels behind it, as they are or in gzip.
+//! NRRD writer: a text header, followed by the voxels, uncompressed or in gzip.
 //!
-//! After <https://teem.sourceforge.net/nrrd/format.html>. World space is right-anterior-superior millimetres where a body
-//! is known, and has no name where none is. What is known of the values is in keys and in the fields that there are.
+//! Format: <https://teem.sourceforge.net/nrrd/format.html>. World space is right-anterior-superior millimetres if the
+//! orientation is anatomical, otherwise unnamed. Metadata of the values are stored in standard fields and key/value
+//! pairs.
 
 use std::fmt::Write as _;
 use std::io::{Result, Write};
@@ -14,22 +15,22 @@ use super::outgoing::Outgoing;
 use crate::data::{Hints, Meaning, VoxelType};
 use crate::model::made_by;
 
-/// What a header says, and how.
+/// Contents of an NRRD header.
 pub(super) struct Header<'a> {
-    /// What the volume is called.
+    /// Name of the volume.
     pub(super) content: &'a str,
     pub(super) voxel_type: VoxelType,
     pub(super) dims: [usize; 3],
-    /// Voxel indices to the world; `None` where nothing is known of it.
+    /// Transform from voxel indices to world space; `None` if it is unknown.
     pub(super) world_from_index: Option<DAffine3>,
     pub(super) is_anatomical: bool,
-    /// Whether lengths are in voxels.
+    /// True if lengths are in voxels.
     pub(super) has_unknown_scale: bool,
     pub(super) is_gzip: bool,
 }
 
 impl Header<'_> {
-    /// The lines before the empty one.
+    /// Returns the header's lines, without the empty line at its end.
     pub(super) fn text(&self) -> String {
         let number = match self.voxel_type {
             VoxelType::F32 => "float",
@@ -72,7 +73,7 @@ impl Header<'_> {
     }
 }
 
-/// Writes a volume.
+/// Writes a volume as NRRD.
 pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>, is_gzip: bool) -> Result<()> {
     let header = Header {
         content: volume.name(),
@@ -94,11 +95,11 @@ pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>, is_gzip: bool) -
     encoder.finish().map(drop)
 }
 
-/// The lines that say what is known of the values.
+/// Returns the header's lines with metadata of the values.
 fn of_values(hints: &Hints, unit: Option<&str>) -> String {
     let mut text = String::new();
     let mut add = |line: std::fmt::Arguments<'_>| {
-        // Text takes whatever is written to it.
+        // Writing to a string cannot fail.
         text.write_fmt(line).ok();
         text.push('\n');
     };
@@ -106,7 +107,7 @@ fn of_values(hints: &Hints, unit: Option<&str>) -> String {
         add(format_args!("sample units: \"{unit}\""));
     }
     if hints.is_rescaled {
-        // That there was another range; which, is not known.
+        // Records that the values were rescaled; the original range is unknown.
         add(format_args!("old min: nan"));
     }
     if let Some(code) = hints.modality.code() {
@@ -123,7 +124,7 @@ fn of_values(hints: &Hints, unit: Option<&str>) -> String {
         add(format_args!("acquisition:={acquisition}"));
     }
     if hints.meaning == Meaning::Labels {
-        // By this 3D Slicer marks its segmentations.
+        // Key by which 3D Slicer recognises segmentations.
         add(format_args!("Segmentation_ContainedRepresentationNames:=Binary labelmap|"));
     }
     for (at, (number, label)) in hints.labels.iter().enumerate() {

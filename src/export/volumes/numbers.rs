@@ -1,19 +1,20 @@
-//! Voxels in another number type: exactly, or with a range of values on all numbers of the type.
+//! Conversion of voxels to another number type: exactly, or by mapping a range of values to the full range of the
+//! type.
 
 use crate::data::{Samples, ValueRange, VoxelType};
 
-/// In which numbers a volume is to be written.
+/// Requested number type of a volume that is exported.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NumberWish {
-    /// The number type; that of the volume where there is none.
+    /// Number type; `None` keeps that of the volume.
     pub voxel_type: Option<VoxelType>,
-    /// The values that become the lowest and the highest number of the type; what lies beyond becomes those, too.
+    /// Values that are mapped to the lowest and the highest number of the type; values outside are clamped.
     pub rescaled: Option<ValueRange>,
-    /// What voxels get that hold nothing.
+    /// Value for missing voxels.
     pub padding: Option<f64>,
 }
 
-/// Why voxels cannot be written as somebody wishes.
+/// Reason why voxels cannot be converted as requested.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages say it")]
 pub enum ConvertError {
@@ -46,19 +47,19 @@ pub enum ConvertError {
     NoOrientation,
 }
 
-/// How values become numbers of a file.
+/// Conversion of voxel values to the numbers in a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Numbers {
     pub(super) voxel_type: VoxelType,
-    /// What values are multiplied by, and what is added then, before they are rounded.
+    /// Linear mapping of values to whole numbers, followed by rounding.
     scale: Option<Scale>,
-    /// The values that hold nothing, besides those that are not finite, …
+    /// Padding value of the volume, which marks missing voxels in addition to values that are not finite.
     found_padding: Option<f64>,
-    /// … and what they become.
+    /// Number that is written for missing voxels.
     padding: Option<f64>,
 }
 
-/// A range of values on a range of whole numbers.
+/// Linear mapping from a range of values to a range of whole numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Scale {
     from: ValueRange,
@@ -73,7 +74,7 @@ impl Scale {
     }
 }
 
-/// The whole numbers of a type; `None` for types that have others.
+/// Returns the range of an integer type; `None` for floating-point types.
 fn whole_numbers(voxel_type: VoxelType) -> Option<ValueRange> {
     let (low, high) = match voxel_type {
         VoxelType::U8 => (0.0, f64::from(u8::MAX)),
@@ -87,7 +88,7 @@ fn whole_numbers(voxel_type: VoxelType) -> Option<ValueRange> {
     Some(ValueRange::new(low, high))
 }
 
-/// Whether a type has a number.
+/// Returns true if a number type can represent a value.
 fn has_number(voxel_type: VoxelType, value: f64) -> bool {
     match whole_numbers(voxel_type) {
         Some(all) => (all.low..=all.high).contains(&value) && value.fract() == 0.0,
@@ -96,15 +97,15 @@ fn has_number(voxel_type: VoxelType, value: f64) -> bool {
 }
 
 impl Numbers {
-    /// Those that voxels have already.
+    /// Creates a conversion that keeps the voxels' numbers.
     pub(super) fn of(samples: &Samples) -> Self {
         Self { voxel_type: samples.voxel_type(), scale: None, found_padding: None, padding: None }
     }
 
-    /// Those that somebody wishes for voxels with some padding.
+    /// Creates the requested conversion for voxels with a given padding value.
     ///
     /// # Errors
-    /// When a value has no number.
+    /// When a value cannot be represented.
     pub(super) fn wished(
         samples: &Samples,
         found_padding: Option<f64>,
@@ -125,13 +126,13 @@ impl Numbers {
         };
         let holds_nothing = (0..samples.len()).any(|voxel| exact.holds_nothing(samples.value(voxel)));
         let padding = wish.padding.or(holds_nothing.then_some(all.low));
-        // No value may become what stands for none.
+        // The number that marks missing voxels is excluded from the mapping's range.
         let inner = |edge: f64, step: f64| if padding == Some(edge) { edge + step } else { edge };
         let to = ValueRange::new(inner(all.low, 1.0), inner(all.high, -1.0));
         Ok(Self { scale: Some(Scale { from, to }), padding, ..exact })
     }
 
-    /// Whether voxels become what they are already.
+    /// Returns true if the conversion leaves voxels unchanged.
     pub(super) fn is_as_found(&self, samples: &Samples) -> bool {
         self.voxel_type == samples.voxel_type() && self.scale.is_none() && self.padding.is_none()
     }
@@ -140,7 +141,7 @@ impl Numbers {
         self.scale.is_some()
     }
 
-    /// The number of a value.
+    /// Converts a voxel value to the number in the file.
     pub(super) fn number(&self, value: f64) -> f64 {
         match (self.padding, self.scale) {
             (Some(padding), _) if self.holds_nothing(value) => padding,
@@ -149,9 +150,9 @@ impl Numbers {
         }
     }
 
-    /// The number of voxels that hold nothing, where there is one that says so.
+    /// Returns the number that marks missing voxels in the file, if there is one.
     pub(super) fn padding(&self) -> Option<f64> {
-        // What no voxel has, and the type has not either, says nothing.
+        // A padding value that no voxel has and the type cannot represent is dropped.
         self.padding.or(self.found_padding.filter(|&value| has_number(self.voxel_type, value)))
     }
 
@@ -159,7 +160,7 @@ impl Numbers {
         !value.is_finite() || self.found_padding == Some(value)
     }
 
-    /// Looks for values that the type has not.
+    /// Checks that the number type can represent all values.
     fn check(&self, samples: &Samples) -> Result<(), ConvertError> {
         let (voxel_type, name) = (self.voxel_type, self.voxel_type.name());
         if voxel_type == samples.voxel_type() || voxel_type == VoxelType::F64 {
@@ -184,7 +185,7 @@ impl Numbers {
                 inexact = inexact.or(Some(value));
             }
         }
-        // Padding alone fits: that was looked at.
+        // The padding value was validated before.
         let Some(found) = found else { return Ok(()) };
         let Some(allowed) = whole_numbers(voxel_type) else {
             let reach = f64::from(f32::MAX);
@@ -211,7 +212,7 @@ impl Numbers {
     }
 }
 
-/// Appends a number to bytes, the lowest byte first. What a type has not was refused before.
+/// Appends a number in little-endian order. Values that the type cannot represent were rejected before.
 pub(super) fn put(bytes: &mut Vec<u8>, voxel_type: VoxelType, number: f64) {
     match voxel_type {
         VoxelType::U8 => bytes.extend((number as u8).to_le_bytes()),

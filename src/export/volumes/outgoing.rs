@@ -1,4 +1,4 @@
-//! A volume as it goes out: turned, and in other numbers, without a second copy of its voxels.
+//! Volume in the orientation and number type of an export, without a copy of its voxels.
 
 use std::io::{Result, Write};
 
@@ -8,14 +8,14 @@ use super::numbers::{ConvertError, NumberWish, Numbers, put};
 use super::turn::Turn;
 use crate::data::{Headings, Hints, Meaning, Samples, Volume, VoxelType};
 
-/// A volume that is to be written. Its voxels are turned and converted while they are.
+/// Volume to be exported. Its voxels are reoriented and converted while they are written.
 #[derive(Debug, Clone)]
 pub struct Outgoing<'a> {
     volume: &'a Volume,
     dims: [usize; 3],
-    /// Voxel indices (centres at whole numbers) to millimetres.
+    /// Transform from voxel indices (centres at integers) to millimetres.
     world_from_index: DAffine3,
-    /// Where the first voxel is among those of the volume, and how far it is to the next along each axis.
+    /// Index of the first exported voxel in the volume, and the signed strides along each exported axis.
     first: isize,
     steps: [isize; 3],
     numbers: Numbers,
@@ -23,7 +23,7 @@ pub struct Outgoing<'a> {
 }
 
 impl<'a> Outgoing<'a> {
-    /// A volume as it is.
+    /// Creates an export of a volume as it is.
     pub fn of(volume: &'a Volume) -> Self {
         let dims = volume.dims();
         let mut hints = volume.hints().clone();
@@ -39,11 +39,11 @@ impl<'a> Outgoing<'a> {
         }
     }
 
-    /// The same with its axes in another order, some of them backwards, so that they go towards some sides of the body.
-    /// Every voxel stays where it is in the world.
+    /// Permutes and flips the axes so that they point to the given sides of the body. Every voxel keeps its position
+    /// in the world.
     ///
     /// # Errors
-    /// When it is not known which way the body lies.
+    /// When the volume has no anatomical orientation.
     pub fn oriented(self, headings: Headings) -> std::result::Result<Self, ConvertError> {
         if !self.volume.is_anatomical() {
             return Err(ConvertError::NoOrientation);
@@ -68,16 +68,16 @@ impl<'a> Outgoing<'a> {
         })
     }
 
-    /// The same in other numbers.
+    /// Changes the number type of the export.
     ///
     /// # Errors
-    /// When a value has no such number.
+    /// When a value cannot be represented.
     pub fn in_numbers(self, wish: &NumberWish) -> std::result::Result<Self, ConvertError> {
         let numbers = Numbers::wished(self.volume.samples(), self.hints.padding, wish)?;
         let mut hints = self.hints;
         hints.padding = numbers.padding();
         if numbers.is_rescaled() {
-            // What was said of the values is not true of these numbers.
+            // Metadata of the original values do not apply to rescaled numbers.
             let mut rescaled = Hints::default();
             rescaled.modality = hints.modality;
             rescaled.is_rescaled = true;
@@ -89,69 +89,69 @@ impl<'a> Outgoing<'a> {
         Ok(Self { numbers, hints, ..self })
     }
 
-    /// What it is called.
+    /// Name of the volume.
     pub(super) fn name(&self) -> &str {
         self.volume.name()
     }
 
-    /// Voxels along x, y, z.
+    /// Number of voxels along x, y, z.
     pub fn dims(&self) -> [usize; 3] {
         self.dims
     }
 
-    /// Voxel indices (centres at whole numbers) to millimetres.
+    /// Transform from voxel indices (centres at integers) to millimetres.
     pub fn world_from_index(&self) -> DAffine3 {
         self.world_from_index
     }
 
-    /// Distances between voxels.
+    /// Distances between voxels along each axis, in mm.
     pub(super) fn spacing_mm(&self) -> [f64; 3] {
         let axes = self.world_from_index.matrix3;
         [axes.x_axis, axes.y_axis, axes.z_axis].map(glam::DVec3::length)
     }
 
-    /// Whether +x, +y and +z of the world are known to be a body's right, front and head.
+    /// Returns true if +x, +y and +z of the world are known to be a body's right, front and head.
     pub(super) fn is_anatomical(&self) -> bool {
         self.volume.is_anatomical()
     }
 
-    /// Whether lengths are in voxels.
+    /// Returns true if lengths are in voxels.
     pub(super) fn has_unknown_scale(&self) -> bool {
         self.volume.has_unknown_scale()
     }
 
-    /// Whether nothing is known of where it lies, how large it is, or which way its axes go.
+    /// Returns true if position, scale and orientation of the volume are all unknown.
     pub(super) fn has_no_place(&self) -> bool {
         self.has_unknown_scale() && self.world_from_index == DAffine3::IDENTITY
     }
 
-    /// Whether all that is known of where it lies is how far apart its voxels are.
+    /// Returns true if the spacing is all that is known of the volume's geometry.
     pub(super) fn has_distances_alone(&self) -> bool {
         let straight = glam::DMat3::from_diagonal(self.spacing_mm().into());
         !self.is_anatomical() && self.world_from_index == DAffine3::from_mat3(straight)
     }
 
-    /// The number type that is written.
+    /// Number type that is written.
     pub fn voxel_type(&self) -> VoxelType {
         self.numbers.voxel_type
     }
 
-    /// What is known of the values, as they are written.
+    /// Metadata of the values, as they are written.
     pub(super) fn hints(&self) -> &Hints {
         &self.hints
     }
 
-    /// The unit of the values: also where it is known by what they mean.
+    /// Unit of the values, stated or implied by their meaning.
     pub(super) fn unit(&self) -> Option<&str> {
         self.hints.unit().or((self.hints.meaning == Meaning::HounsfieldUnits).then_some("HU"))
     }
 
-    /// Bytes of all voxels.
+    /// Size of all voxels, in bytes.
     pub(super) fn bytes(&self) -> u64 {
         self.dims.iter().fold(self.voxel_type().bytes() as u64, |bytes, &n| bytes * n as u64)
     }
 
-    /// Writes all voxels, x fastest, the lowest byte of each first, a row at a time.
+    /// Writes all voxels row by row, x fastest, in little-endian order.
     pub(super) fn write_voxels(&self, out: &mut dyn Write) -> Result<()> {
         let mut bytes = Vec::new();
         for z in 0..self.dims[2] as isize {
@@ -164,7 +164,7 @@ impl<'a> Outgoing<'a> {
         Ok(())
     }
 
-    /// Appends the row that begins with some voxel of the volume.
+    /// Appends the row that begins at a voxel of the volume.
     fn put_row(&self, first: isize, bytes: &mut Vec<u8>) {
         let samples = self.volume.samples();
         let step = self.steps[0];

@@ -1,7 +1,7 @@
-//! TIFF: a page for each slice, with `ImageJ`'s words for distances and units, and the voxels as they are.
+//! TIFF writer: one uncompressed page per slice, with `ImageJ` metadata for distances and units.
 //!
-//! After TIFF 6.0 (Adobe, 1992), and `BigTIFF` (<https://www.awaresystems.be/imaging/tiff/bigtiff.html>) beyond 4 GiB. All
-//! pages come first and then all slices behind each other, so that every place is known before anything is written.
+//! Format: TIFF 6.0 (Adobe, 1992), and `BigTIFF` (<https://www.awaresystems.be/imaging/tiff/bigtiff.html>) beyond 4
+//! GiB. All directories precede all slices, so that every offset is known before anything is written.
 
 use std::io::{Result, Write};
 
@@ -9,23 +9,23 @@ use super::outgoing::Outgoing;
 use crate::data::{VoxelType, single_line};
 use crate::model::made_by;
 
-/// Tag of the text that says which program made a file.
+/// Tag of the text that names the writing program.
 const SOFTWARE: u16 = 305;
 
-/// Kinds of values, by their codes.
+/// Field type codes of TIFF.
 const ASCII: u16 = 2;
 const SHORT: u16 = 3;
 const LONG: u16 = 4;
 const RATIONAL: u16 = 5;
 const LONG8: u16 = 16;
 
-/// Below this, distances are said in micrometres, as microscopes do.
+/// Spacing below which distances are written in micrometres, as is usual in microscopy; in mm.
 const SMALL_MM: f64 = 0.01;
 
-/// The slices begin at a multiple of so many bytes: of the longest number, twice.
+/// Alignment of the slices in bytes: twice the size of the widest number.
 const ALIGNMENT: u64 = 16;
 
-/// An entry of a directory.
+/// Entry of a TIFF directory.
 struct Entry {
     tag: u16,
     kind: u16,
@@ -42,7 +42,7 @@ impl Entry {
         Self { tag, kind: LONG, count: 1, value: value.to_le_bytes().to_vec() }
     }
 
-    /// A place or a length, in as many bits as the file counts with.
+    /// Creates an entry for an offset or a length, in the width of the file's offsets.
     fn place(tag: u16, value: u64, is_big: bool) -> Self {
         if is_big {
             return Self { tag, kind: LONG8, count: 1, value: value.to_le_bytes().to_vec() };
@@ -62,11 +62,11 @@ impl Entry {
     }
 }
 
-/// The fraction of two numbers of 32 bits that is nearest to a value: continued, until they do not fit or nothing is left.
+/// Returns the best approximation of a value by a fraction of two 32-bit numbers, from its continued fraction.
 fn fraction(value: f64) -> [u32; 2] {
     let (mut above, mut below) = ([1.0, 0.0], [0.0, 1.0]);
     let mut rest = value;
-    // Sixty-four bits end after some forty steps, whatever the value.
+    // The expansion of a 64-bit number ends after about forty steps.
     for _ in 0..64 {
         let whole = rest.floor();
         let next = |last: [f64; 2]| whole * last[0] + last[1];
@@ -81,7 +81,7 @@ fn fraction(value: f64) -> [u32; 2] {
         }
         rest = 1.0 / (rest - whole);
     }
-    // What is larger or smaller than any fraction is said as nearly as can be.
+    // Values beyond the range of fractions are clamped.
     match [above[0], below[0]] {
         [_, 0.0] => [u32::MAX, 1],
         [0.0, _] => [1, u32::MAX],
@@ -89,29 +89,29 @@ fn fraction(value: f64) -> [u32; 2] {
     }
 }
 
-/// How a file counts.
+/// Offset width of a file: TIFF or `BigTIFF`.
 #[derive(Clone, Copy)]
 struct Form {
     is_big: bool,
 }
 
 impl Form {
-    /// Bytes of the header.
+    /// Size of the file header, in bytes.
     fn header(self) -> u64 {
         if self.is_big { 16 } else { 8 }
     }
 
-    /// Bytes of an entry's value that fit into the entry.
+    /// Maximum size of a value that is stored in the entry itself, in bytes.
     fn inline(self) -> usize {
         if self.is_big { 8 } else { 4 }
     }
 
-    /// A place in the file.
+    /// Encodes an offset in the file.
     fn place(self, at: u64) -> Vec<u8> {
         if self.is_big { at.to_le_bytes().to_vec() } else { (at as u32).to_le_bytes().to_vec() }
     }
 
-    /// A directory that begins at a place, and the values that do not fit into its entries behind it; the next directory
+    /// Encodes a directory at an offset, followed by the values that do not fit into its entries; the next directory
     /// follows, unless it is the last.
     fn directory(self, entries: &[Entry], at: u64, is_last: bool) -> Vec<u8> {
         let (count, entry) = if self.is_big { (8, 20) } else { (2, 12) };
@@ -129,7 +129,7 @@ impl Form {
             }
             bytes.extend(self.place(behind));
             let mut value = value.clone();
-            // Values begin at even places.
+            // Padding keeps offsets of values even.
             value.resize(value.len().next_multiple_of(8), 0);
             behind += value.len() as u64;
             values.extend(value);
@@ -140,7 +140,7 @@ impl Form {
     }
 }
 
-/// What goes into the directory of every page.
+/// Input for the directories of all pages.
 struct Pages<'a> {
     volume: &'a Outgoing<'a>,
     form: Form,
@@ -152,21 +152,21 @@ impl<'a> Pages<'a> {
         Self { volume, form: Form { is_big }, page_bytes: volume.bytes() / volume.dims()[2] as u64 }
     }
 
-    /// Where the pixels of the first page begin.
+    /// Returns the offset of the first page's pixels.
     fn pixels(&self) -> u64 {
         let of_page = |page: usize| self.form.directory(&self.entries(page, 0), 0, false).len() as u64;
         let others = self.volume.dims()[2] as u64 - 1;
-        // All but the first are alike.
+        // All pages but the first have directories of equal size.
         let others = if others > 0 { others * of_page(1) } else { 0 };
         (self.form.header() + of_page(0) + others).next_multiple_of(ALIGNMENT)
     }
 
-    /// The entries of a page whose pixels begin at a place.
+    /// Returns the entries of a page whose pixels are at an offset.
     fn entries(&self, page: usize, pixels: u64) -> Vec<Entry> {
         let [width, height, _] = self.volume.dims();
         let voxel_type = self.volume.voxel_type();
         let is_first = page == 0;
-        // 1 is unsigned, 2 signed, 3 floating point.
+        // Sample formats: 1 unsigned, 2 signed, 3 floating point.
         let format = match voxel_type {
             VoxelType::U8 | VoxelType::U16 | VoxelType::U32 => 1,
             VoxelType::I8 | VoxelType::I16 | VoxelType::I32 => 2,
@@ -176,7 +176,7 @@ impl<'a> Pages<'a> {
             Entry::long(256, width as u32),
             Entry::long(257, height as u32),
             Entry::short(258, 8 * voxel_type.bytes() as u16),
-            // Not compressed; black is zero.
+            // Uncompressed; black is zero.
             Entry::short(259, 1),
             Entry::short(262, 1),
         ];
@@ -193,32 +193,32 @@ impl<'a> Pages<'a> {
             if !self.volume.has_no_place() {
                 let [x, y, _] = lengths(self.volume);
                 entries.extend([Entry::rational(282, 1.0 / x), Entry::rational(283, 1.0 / y)]);
-                // Of the unit that the description names.
+                // No absolute unit: the description names it.
                 entries.push(Entry::short(296, 1));
             }
             entries.push(Entry::text(SOFTWARE, &made_by()));
         }
         entries.push(Entry::short(339, format));
         if let Some(padding) = self.volume.hints().padding.filter(|_| is_first) {
-            // Of GDAL: what was not measured.
+            // Tag of GDAL for the no-data value.
             entries.push(Entry::text(42113, &padding.to_string()));
         }
         entries
     }
 }
 
-/// Writes a volume.
+/// Writes a volume as TIFF, or as `BigTIFF` beyond 4 GiB.
 pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>) -> Result<()> {
     let pages = Pages::of(volume, false);
     let is_big = pages.pixels() + volume.bytes() > u64::from(u32::MAX);
     write_pages(out, &if is_big { Pages::of(volume, true) } else { pages })
 }
 
-/// Writes a volume in a form.
+/// Writes a volume with the offset width of `pages`.
 fn write_pages(out: &mut dyn Write, pages: &Pages<'_>) -> Result<()> {
     let Pages { volume, form, page_bytes } = *pages;
     if form.is_big {
-        // 43, then eight bytes for each place.
+        // Version 43, then the offset size of eight bytes.
         out.write_all(b"II\x2b\0\x08\0\0\0")?;
     } else {
         out.write_all(b"II\x2a\0")?;
@@ -236,7 +236,7 @@ fn write_pages(out: &mut dyn Write, pages: &Pages<'_>) -> Result<()> {
     volume.write_voxels(out)
 }
 
-/// Distances in the unit that is said.
+/// Returns the distances in the unit that the description names.
 fn lengths(volume: &Outgoing<'_>) -> [f64; 3] {
     let spacing = volume.spacing_mm();
     if is_small(volume) { spacing.map(|length| length * 1e3) } else { spacing }
@@ -246,10 +246,10 @@ fn is_small(volume: &Outgoing<'_>) -> bool {
     !volume.has_unknown_scale() && volume.spacing_mm().iter().any(|&length| length < SMALL_MM)
 }
 
-/// The lines that `ImageJ` reads.
+/// Returns the metadata lines that `ImageJ` reads.
 fn description(volume: &Outgoing<'_>) -> String {
     let slices = volume.dims()[2];
-    // As the programs say that write its files.
+    // Identifies the file as one of `ImageJ`'s.
     let mut text = format!("ImageJ=1.54f\nimages={slices}\nslices={slices}\n");
     let mut add = |name: &str, value: &str| text.extend([name, "=", &single_line(value, 200), "\n"]);
     if !volume.has_unknown_scale() {

@@ -1,10 +1,10 @@
-//! How a grid is turned so that its axes go towards other sides of a body.
+//! Reorientation of a grid, so that its axes point to chosen sides of a body.
 
 use glam::{DAffine3, DMat3, DVec3};
 
 use crate::data::{AxisOrder, Headings};
 
-/// How a grid is turned: which of its axes become the first, second and third, and which of those are walked backwards.
+/// Permutation of a grid's axes, and which of the resulting axes are reversed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Turn {
     pub(super) sources: [usize; 3],
@@ -12,7 +12,7 @@ pub(super) struct Turn {
 }
 
 impl Turn {
-    /// The turn after which the axes of a grid go where the letters say, as nearly as axes can that go askew.
+    /// Finds the reorientation after which a grid's axes point to the given sides, as nearly as oblique axes can.
     pub(super) fn towards(headings: Headings, world_from_index: DAffine3) -> Self {
         let axes = world_from_index.matrix3;
         let directions = [axes.x_axis, axes.y_axis, axes.z_axis].map(DVec3::normalize_or_zero);
@@ -21,7 +21,7 @@ impl Turn {
         let nearness = |sources: &[usize; 3]| -> f64 {
             sources.iter().zip(sides).map(|(&source, side)| along(source, side).abs()).sum()
         };
-        // Of equally near ones the first, so that nothing moves without need.
+        // Among equal candidates the first one wins, so that axes are not permuted without need.
         let orders = AxisOrder::ALL.map(AxisOrder::places);
         let sources = orders.into_iter().fold(orders[0], |best, order| {
             if nearness(&order) > nearness(&best) + 1e-9 { order } else { best }
@@ -30,7 +30,8 @@ impl Turn {
         Self { sources, is_reversed }
     }
 
-    /// Takes an index of the turned grid to that of the same voxel before, in a grid of `dims` voxels before.
+    /// Returns the transform from an index of the reoriented grid to the index of the same voxel in the original grid
+    /// of `dims` voxels.
     pub(super) fn index_from_turned(self, dims: [usize; 3]) -> DAffine3 {
         let mut matrix3 = DMat3::ZERO;
         let mut translation = DVec3::ZERO;
@@ -63,7 +64,7 @@ mod tests {
 
     #[test]
     fn axes_go_where_the_letters_say() {
-        // Half a turn around a skewed axis, and mirrored: nothing of a unit matrix left.
+        // A large rotation about an oblique axis, and a mirroring: far from the identity.
         let askew = DMat3::from_axis_angle(DVec3::new(0.3, -0.9, 0.4).normalize(), 2.3);
         let matrix3 = askew * DMat3::from_diagonal(DVec3::new(0.5, 2.0, -3.0));
         let world_from_index = DAffine3 { matrix3, translation: DVec3::new(10.0, -20.0, 30.0) };
@@ -84,7 +85,7 @@ mod tests {
             );
             let orders = AxisOrder::ALL.map(AxisOrder::places);
             assert!(orders.into_iter().all(|order| along(order) <= along([0, 1, 2]) + 1e-9), "{name}");
-            // The corners of the box are the same.
+            // The corners of the box do not move.
             let count = turn.sources.map(|source| dims[source]);
             let corner = |affine: DAffine3, count: [usize; 3], at: usize| {
                 let index = std::array::from_fn(|axis| (at >> axis & 1) as f64 * (count[axis] - 1) as f64);

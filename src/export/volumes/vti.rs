@@ -1,7 +1,7 @@
-//! VTK's image in XML, with its values at points, and the voxels behind it as they are.
+//! VTK image data writer (VTI): an XML header with point data, followed by the uncompressed voxels.
 //!
-//! After *VTK File Formats* (<https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html>). World space is the
-//! volume's own: the format has no words for the sides of a body.
+//! Format: *VTK File Formats* (<https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html>). World space is
+//! that of the volume: the format cannot express anatomical directions.
 
 use std::io::{Result, Write};
 
@@ -11,10 +11,10 @@ use super::outgoing::Outgoing;
 use crate::data::VoxelType;
 use crate::model::made_by;
 
-/// What stands before and behind the comment that says who made a file.
+/// Text before and after the comment with the program mark.
 const COMMENT: [&str; 2] = ["<?xml version=\"1.0\"?>\n<!-- ", " -->\n"];
 
-/// Writes a volume.
+/// Writes a volume as VTK image data.
 pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>) -> Result<()> {
     let [before, after] = COMMENT;
     let kind = match volume.voxel_type() {
@@ -45,7 +45,7 @@ pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>) -> Result<()> {
     out.write_all(b"\n</AppendedData>\n</VTKFile>\n")
 }
 
-/// The attributes that say where points lie; none where nothing is known of it.
+/// Returns the attributes for position, spacing and orientation; empty if they are unknown.
 fn place(volume: &Outgoing<'_>) -> String {
     if volume.has_no_place() {
         return String::new();
@@ -55,7 +55,7 @@ fn place(volume: &Outgoing<'_>) -> String {
     let spacing = DVec3::from(volume.spacing_mm());
     let axes = world.matrix3;
     let directions = [axes.x_axis / spacing.x, axes.y_axis / spacing.y, axes.z_axis / spacing.z];
-    // Row by row; without the sign that a zero may have.
+    // Row by row, without the sign of a negative zero.
     let rows = [0, 1, 2].map(|row| words(DVec3::from(directions.map(|axis| axis[row] + 0.0))));
     format!(
         " Origin=\"{}\" Spacing=\"{}\" Direction=\"{}\"",
@@ -65,7 +65,7 @@ fn place(volume: &Outgoing<'_>) -> String {
     )
 }
 
-/// Text within an attribute.
+/// Escapes text for an XML attribute.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

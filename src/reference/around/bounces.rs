@@ -1,8 +1,8 @@
-//! Light that bounces: what material scatters lights what is around it.
+//! Bounced light (multiple scattering) between blocks of voxels.
 //!
-//! Of a block, ϖ is what it scatters of the light that it meets, for each colour, and φ the mean light there over all
-//! directions. φ₀ is that of lights and sky; what has bounced is ψ = ⟨L⟩, the mean over directions of the light along rays
-//! through blocks that give off S = ϖ (φ₀ + ψ).
+//! For each block, ϖ is its scattering coefficient for each colour, and φ the mean of the light there over all
+//! directions. φ₀ is that of lights and sky; bounced light is ψ = ⟨L⟩, the mean over directions of the light along
+//! rays through blocks that emit S = ϖ (φ₀ + ψ).
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -14,46 +14,46 @@ use crate::reference::field::classified::Side;
 use crate::reference::field::trilinear;
 use crate::reference::{Reference, linear_from_srgb};
 
-/// Most points that stand for a light: what has bounced shows no edge of a shadow.
+/// Maximum number of points for an area light: bounced light shows no edges of shadows.
 const MOST_POINTS: u32 = 8;
 
-/// The largest ratio of two bounces that is believed.
+/// Maximum ratio of two successive bounces, to which estimates are clamped.
 const MOST_RATIO: f64 = 0.98;
 
-/// Light that has bounced.
+/// Volume of bounced light.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bounced {
-    /// Blocks along x, y and z.
+    /// Number of blocks along x, y and z.
     pub dims: [usize; 3],
-    /// Voxels along the edge of a block.
+    /// Edge of a block, in voxels.
     pub divisor: usize,
     /// Linear RGB of each block, x fastest, channel by channel.
     pub light: [Vec<f64>; 3],
 }
 
-/// What light meets: blocks of voxels, per scene unit.
+/// Participating medium in blocks of voxels: coefficients per scene unit.
 #[derive(Debug, Clone)]
 pub struct Medium {
-    /// Blocks along x, y and z.
+    /// Number of blocks along x, y and z.
     pub dims: [usize; 3],
-    /// Voxels along the edge of a block.
+    /// Edge of a block, in voxels.
     pub divisor: usize,
-    /// Extinction times what of it scatters, for each colour.
+    /// Scattering coefficient for each colour: extinction times albedo.
     pub scattering: [Vec<f64>; 3],
-    /// Extinction.
+    /// Extinction coefficient of each block.
     pub extinction: Vec<f64>,
 }
 
-/// A light that is on.
+/// Light that is on, sampled at points.
 pub(super) struct Lamp {
     points: Vec<SceneLight>,
     rgb: [f64; 3],
-    /// Multiplies what it meets: 0 where nothing attenuates it.
+    /// Factor of the extinction; 0 if nothing attenuates the light.
     scale: f64,
 }
 
 impl Bounced {
-    /// Between blocks.
+    /// Interpolates between blocks at an index-space point.
     fn at(&self, point: DVec3) -> [f64; 3] {
         let place = (point + 0.5) / self.divisor as f64 - 0.5;
         self.light.each_ref().map(|light| trilinear(self.dims, light, place))
@@ -61,19 +61,20 @@ impl Bounced {
 }
 
 impl Medium {
-    /// A block's place in the grid.
+    /// Returns the position of a block in the grid of blocks.
     pub fn block(&self, at: usize) -> DVec3 {
         let [nx, ny, _] = self.dims;
         DVec3::new((at % nx) as f64, (at / nx % ny) as f64, (at / (nx * ny)) as f64)
     }
 
-    /// Scattering and extinction between blocks.
+    /// Interpolates scattering and extinction at a position in blocks.
     pub fn at(&self, block: DVec3) -> ([f64; 3], f64) {
         let of = |values: &[f64]| bordered(self.dims, values, block);
         (self.scattering.each_ref().map(|values| of(values)), of(&self.extinction))
     }
 
-    /// The optical depth along a vector that is a scene unit long, over a part of the way and in steps of that length.
+    /// Returns the optical depth along a ray, whose direction `along` is the displacement per scene unit, from one
+    /// distance to another in steps of length `step`.
     pub(super) fn depth(&self, block: DVec3, along: DVec3, (from, to): (f64, f64), step: f64) -> f64 {
         let (mut way, mut depth) = (from, 0.0);
         while way < to {
@@ -88,14 +89,14 @@ impl Medium {
         depth
     }
 
-    /// Whether a place is near the grid.
+    /// Returns true if a position is in the grid or up to a block outside.
     pub fn holds(&self, block: DVec3) -> bool {
         block.min_element() >= -1.0 && (block - DVec3::from(self.dims.map(|n| n as f64))).max_element() <= 0.0
     }
 }
 
 impl Reference<'_> {
-    /// The light that has bounced, from as many bounces and directions and as finely as the settings say.
+    /// Computes bounced light, with the number of bounces and directions and the resolution in the settings.
     pub fn bounced(&self) -> Bounced {
         let scattering = &self.settings.scattering;
         let medium = self.medium();
@@ -107,14 +108,14 @@ impl Reference<'_> {
         let own = self.settings.shading.emission / scattering.albedo;
         let mut first = self.before_bounces(&medium, &frames_of_a_bounce);
         first.iter_mut().flatten().for_each(|light| *light += own);
-        // What bounces have brought in all, and how much more that was than before the last.
+        // Sum of all bounces so far, and its change in the last step.
         let (mut light, mut change) = (nothing(), nothing());
         for bounce in 1..=scattering.bounces {
             let given: [Vec<f64>; 3] = std::array::from_fn(|c| {
                 (0..count).map(|at| medium.scattering[c][at] * (first[c][at] + light[c][at])).collect()
             });
             if bounce == scattering.bounces {
-                // In more directions, for what is seen.
+                // The last bounce is the visible one, and has more directions.
                 light = mean_light(&medium, &frames, &given, |_| [0.0; 3]);
                 break;
             }
@@ -122,7 +123,7 @@ impl Reference<'_> {
             let more: [Vec<f64>; 3] = std::array::from_fn(|c| {
                 next[c].iter().zip(&light[c]).map(|(next, last)| next - last).collect()
             });
-            // The last but one leaps to the end of the series, and every other before it.
+            // The last bounce but one extrapolates the series to its end, and so does every second one before it.
             let leaps = bounce > 1 && (scattering.bounces - 1 - bounce).is_multiple_of(2);
             for c in 0..3 {
                 let ratio = if leaps { ratio(&medium, &more[c], &change[c]) } else { 0.0 };
@@ -135,8 +136,8 @@ impl Reference<'_> {
         Bounced { dims: medium.dims, divisor: medium.divisor, light }
     }
 
-    /// The mean light over all directions that reaches each block of lights and sky before it has bounced, linear RGB; that of
-    /// the sky from so many directions.
+    /// Returns the mean light over all directions, linear RGB, that reaches each block from lights and sky before it
+    /// bounces; that of the sky from the given number of directions.
     pub fn unscattered(&self, medium: &Medium, directions: u32) -> [Vec<f64>; 3] {
         self.before_bounces(medium, &self.frames(medium, directions))
     }
@@ -159,13 +160,13 @@ impl Reference<'_> {
         light
     }
 
-    /// Rays in so many directions.
+    /// Creates sweep frames in the given number of directions.
     fn frames(&self, medium: &Medium, directions: u32) -> Vec<SweepFrame> {
         let all = sweep_directions(directions).into_iter();
         all.map(|towards| SweepFrame::new(&self.scene, medium.divisor, towards)).collect()
     }
 
-    /// What light meets that is scattered.
+    /// Computes the medium that scatters light.
     pub fn medium(&self) -> Medium {
         let scattering = &self.settings.scattering;
         let divisor = self.settings.shadows.soft(scattering.resolution, self.scene.dims).divisor();
@@ -194,7 +195,7 @@ impl Reference<'_> {
         Medium { dims, divisor, scattering: [of(0), of(1), of(2)], extinction: of(3) }
     }
 
-    /// The lights that are on.
+    /// Returns the lights that are on.
     pub(super) fn lamps(&self) -> Vec<Lamp> {
         let settings = self.settings;
         let on = settings.lights.iter().enumerate().filter(|(_, light)| light.on);
@@ -214,8 +215,8 @@ impl Reference<'_> {
         .collect()
     }
 
-    /// The mean light over all directions that reaches a block from the lights without being scattered. Of a light whose
-    /// brightness is that of a white surface which faces it, E/π, that is a quarter: E / 4π.
+    /// Returns the mean light over all directions that reaches a block from the lights unscattered. A light whose
+    /// brightness is that of a white surface facing it, E/π, contributes a quarter of it: E / 4π.
     fn light_in_block(&self, medium: &Medium, lamps: &[Lamp], at: usize) -> [f64; 3] {
         if medium.extinction[at] <= 0.0 {
             return [0.0; 3];
@@ -231,8 +232,9 @@ impl Reference<'_> {
         })
     }
 
-    /// The same at any place, by what `way` says of a ray through blocks along a vector that is a scene unit long, up to a
-    /// distance: of an extinction's scale, what is left by its first part, and the optical depth of the rest.
+    /// Returns the mean light over all directions at a position, from lights unscattered. For a ray whose direction
+    /// is the displacement in blocks per scene unit, up to a distance, `way` returns the transmittance of its first
+    /// part as a function of the extinction's factor, and the optical depth of the rest.
     pub(super) fn light_of<F: Fn(f64) -> f64>(
         &self,
         medium: &Medium,
@@ -263,8 +265,8 @@ impl Reference<'_> {
         light
     }
 
-    /// Bounced light on a surface, as a share of its colour; `weight` says how much of one it is, and `side` to which side it
-    /// looks, 1 along the normal and −1 against it.
+    /// Returns bounced light on a surface, as a share of its colour; `weight` (0 … 1) is the degree to which the
+    /// sample is a surface, and `side` the side that it faces, 1 along the normal and −1 against it.
     pub(in crate::reference) fn lit_by_bounces(
         &self,
         bounced: Option<&Bounced>,
@@ -282,8 +284,8 @@ impl Reference<'_> {
     }
 }
 
-/// What a bounce brings of what the one before did, over all blocks that scatter light: all further ones bring
-/// ρ / (1 − ρ) of it.
+/// Returns the ratio ρ of a bounce to the one before, by least squares over all blocks that scatter light: all
+/// further ones add ρ / (1 − ρ) of the last.
 fn ratio(medium: &Medium, more: &[f64], before: &[f64]) -> f64 {
     let over = |a: &[f64], b: &[f64]| -> f64 {
         let products = medium.extinction.iter().zip(a.iter().zip(b));
@@ -292,7 +294,8 @@ fn ratio(medium: &Medium, more: &[f64], before: &[f64]) -> f64 {
     (over(more, before) / over(before, before).max(1e-20)).clamp(0.0, MOST_RATIO)
 }
 
-/// The mean light over directions at every block, of what blocks give off per scene unit and of what arrives from outside.
+/// Returns the mean light over directions at every block, from the emission of blocks per scene unit and from light
+/// that arrives from outside.
 fn mean_light(
     medium: &Medium,
     frames: &[SweepFrame],
@@ -312,7 +315,7 @@ fn mean_light(
     sums
 }
 
-/// The mean light of each ray over each slice.
+/// Returns the mean light of each ray over each slice.
 fn march(medium: &Medium, frame: &SweepFrame, given: &[Vec<f64>; 3], arriving: [f64; 3]) -> Vec<[f64; 3]> {
     let [width, height] = frame.size;
     let of_ray = |ray: usize| {
@@ -323,7 +326,7 @@ fn march(medium: &Medium, frame: &SweepFrame, given: &[Vec<f64>; 3], arriving: [
             let block = frame.block(slice as f64, frame.crossing(ray, slice));
             let depth = bordered(medium.dims, &medium.extinction, block) * frame.step;
             let given = given.each_ref().map(|given| bordered(medium.dims, given, block) * frame.step);
-            // (1 − e^−τ)/τ, and what is left of the light that is given off itself.
+            // (1 − e^−τ)/τ, and the mean over the slice of its own emission.
             let mean = if depth < 1e-12 { 1.0 } else { -(-depth).exp_m1() / depth };
             let share = if depth < 1e-5 { 0.5 } else { (1.0 - mean) / depth };
             deposits.push(std::array::from_fn(|c| light[c] * mean + given[c] * share));
@@ -334,7 +337,7 @@ fn march(medium: &Medium, frame: &SweepFrame, given: &[Vec<f64>; 3], arriving: [
     (0..(width * height) as usize).into_par_iter().flat_map_iter(of_ray).collect()
 }
 
-/// What of it a block receives: between the four rays around it.
+/// Returns the light that a block receives, interpolated between the four rays around it.
 fn received(frame: &SweepFrame, deposits: &[[f64; 3]], block: DVec3, channel: usize) -> f64 {
     let (slice, ray) = frame.place(block);
     let low = ray.floor();

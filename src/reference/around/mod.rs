@@ -1,4 +1,4 @@
-//! Light from all around: of a sky, and what bounces.
+//! Indirect light: sky visibility, bounced light, and random walks to verify it.
 
 pub(super) mod bounces;
 pub(super) mod sky;

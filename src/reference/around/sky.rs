@@ -1,6 +1,7 @@
-//! Light from all around: how open to the sky each block of voxels is.
+//! Sky visibility of each block of voxels, and sky light on surfaces.
 //!
-//! Stored are moments over directions ω of the transmittance T from there to beyond the volume: V₀ = ⟨T⟩ and V₁ = ⟨T ω⟩.
+//! Stored are moments over directions ω of the transmittance T from the block out of the volume: V₀ = ⟨T⟩ and V₁ = ⟨T
+//! ω⟩.
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -11,21 +12,21 @@ use crate::reference::Reference;
 use crate::reference::field::classified::Side;
 use crate::reference::field::trilinear;
 
-/// Moments of what is open of the sky.
+/// Volume of sky visibility: two moments over directions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Openness {
-    /// Blocks along x, y and z.
+    /// Number of blocks along x, y and z.
     pub dims: [usize; 3],
-    /// Voxels along the edge of a block.
+    /// Edge of a block, in voxels.
     pub divisor: usize,
     /// V₀ of each block, x fastest.
     pub mean: Vec<f64>,
-    /// V₁ along x, y and z of the scene.
+    /// V₁ along x, y and z of scene space.
     pub first: [Vec<f64>; 3],
 }
 
 impl Openness {
-    /// V₀ and V₁ between blocks.
+    /// Interpolates V₀ and V₁ between blocks at an index-space point.
     pub(in crate::reference) fn at(&self, point: DVec3) -> (f64, DVec3) {
         let place = (point + 0.5) / self.divisor as f64 - 0.5;
         let of = |values: &[f64]| trilinear(self.dims, values, place);
@@ -34,13 +35,13 @@ impl Openness {
 }
 
 impl Reference<'_> {
-    /// How open to the sky places are, from as many directions and as finely as the settings say.
+    /// Computes sky visibility, with the directions and the resolution in the settings.
     pub fn openness(&self) -> Openness {
         let sky = &self.settings.sky;
         self.openness_from(&sweep_directions(sky.directions), self.sky_divisor())
     }
 
-    /// The same from some directions, in blocks of so many voxels along an edge.
+    /// Computes sky visibility from the given directions, in blocks of `divisor` voxels along an edge.
     pub fn openness_from(&self, directions: &[DVec3], divisor: usize) -> Openness {
         let dims = self.scene.dims.map(|n| n.div_ceil(divisor));
         let extinction = self.sky_blocks(dims, divisor);
@@ -61,8 +62,8 @@ impl Reference<'_> {
         Openness { dims, divisor, mean: mean_of(3), first: [mean_of(0), mean_of(1), mean_of(2)] }
     }
 
-    /// Rays from as many directions above and as fine as the settings say, and what is left of each where it meets the floor;
-    /// none where nothing attenuates a sky.
+    /// Returns sweep frames in the number of directions and the resolution of the settings, from the hemisphere
+    /// above, with the transmittance of each ray to the floor; empty if nothing attenuates a sky.
     pub(in crate::reference) fn sky_rays(&self) -> Vec<(SweepFrame, Vec<f64>)> {
         let sky = &self.settings.sky;
         if !self.settings.has_sky_volume() {
@@ -71,7 +72,7 @@ impl Reference<'_> {
         let divisor = self.sky_divisor();
         let extinction = self.sky_blocks(self.scene.dims.map(|n| n.div_ceil(divisor)), divisor);
         let up = self.settings.camera.up.direction();
-        // How far above the floor a place in blocks is.
+        // Height of a position in blocks above the floor.
         let above = |block: DVec3| {
             let index = (block + 0.5) * divisor as f64 - 0.5;
             self.scene.scene_from_index.transform_point3(index).dot(up) - self.settings.floor.height
@@ -84,9 +85,9 @@ impl Reference<'_> {
         directions_above(up, sky.directions).into_iter().map(of).collect()
     }
 
-    /// The light of the sky on a floor that faces up, at an index-space point, as a share of its colour: E/π = ⟨L(ω) T⟩
-    /// over directions that light it equally, with what is left of the light of each; and the same of an open
-    /// floor under a sky of infinitely many: l₀ + ⅔ l₁ · up.
+    /// Returns the light of the sky on a floor that faces up, at an index-space point, as a share of its colour: E/π
+    /// = ⟨L(ω) T⟩ over directions of equal contribution, with the transmittance of each; and the exact value for an
+    /// unshadowed floor: l₀ + ⅔ l₁ · up.
     pub(in crate::reference) fn sky_on_floor(
         &self,
         rays: &[(SweepFrame, Vec<f64>)],
@@ -110,19 +111,19 @@ impl Reference<'_> {
         [[0, 1, 2].map(|c| (bare[c] + strength * (seen[c] - bare[c])).max(0.0)), bare]
     }
 
-    /// Voxels along the edges of blocks.
+    /// Returns the edge of a block, in voxels.
     fn sky_divisor(&self) -> usize {
         self.settings.shadows.soft(self.settings.sky.resolution, self.scene.dims).divisor()
     }
 
-    /// What attenuates the light of a sky in each block.
+    /// Returns the extinction of sky light in each block.
     fn sky_blocks(&self, dims: [usize; 3], divisor: usize) -> Vec<f64> {
         let scale = self.settings.sky.density_scale;
         self.blocks(dims, divisor, |_, extinction| [extinction * scale]).into_iter().flatten().collect()
     }
 
-    /// The mean over eight places in each block, or over the one voxel that it is, of what follows from a place and its
-    /// extinction.
+    /// Averages a function of position and extinction over eight positions in each block, or evaluates it at the
+    /// voxel if a block is a single one.
     pub(in crate::reference) fn blocks<const N: usize>(
         &self,
         dims: [usize; 3],
@@ -153,11 +154,12 @@ impl Reference<'_> {
         (0..dims.iter().product()).into_par_iter().map(of_block).collect()
     }
 
-    /// The light of a sky on a surface, as a share of its colour; `weight` says how much of one it is, and `side` to which
-    /// side it looks, 1 along the normal and −1 against it. `None` of a surface with two sides.
+    /// Returns the light of a sky on a surface, as a share of its colour; `weight` (0 … 1) is the degree to which the
+    /// sample is a surface, and `side` the side that it faces, 1 along the normal and −1 against it; `None` for a
+    /// surface with two sides.
     ///
-    /// For each colour, A₀ = l₀ V₀ + l₁ · V₁ arrives on the mean, A₁ = l₀ V₁ + l₁ V₀ / 3 is its first moment, and the
-    /// irradiance of a surface is π (A₀ + 2 n · A₁): exact for an open hemisphere under a sky of one colour.
+    /// For each colour, the mean of arriving light is A₀ = l₀ V₀ + l₁ · V₁, its first moment A₁ = l₀ V₁ + l₁ V₀ / 3,
+    /// and the irradiance of a surface π (A₀ + 2 n · A₁): exact for an open hemisphere under a uniform sky.
     pub(in crate::reference) fn lit_by_sky(
         &self,
         openness: Option<&Openness>,
@@ -189,7 +191,7 @@ impl Reference<'_> {
     }
 }
 
-/// The optical depths of a ray's slices.
+/// Iterates over the optical depths of a ray's slices.
 fn depths<'a>(frame: &'a SweepFrame, extinction: &'a [f64], ray: usize) -> impl Iterator<Item = f64> + 'a {
     let ray = [ray as u32 % frame.size[0], ray as u32 / frame.size[0]];
     (0..frame.slices()).map(move |slice| {
@@ -198,7 +200,7 @@ fn depths<'a>(frame: &'a SweepFrame, extinction: &'a [f64], ray: usize) -> impl 
     })
 }
 
-/// The mean transmittance over a slice of an optical depth: (1 − e^−τ)/τ.
+/// Returns the mean transmittance over a slice with an optical depth: (1 − e^−τ)/τ.
 fn mean_over(depth: f64) -> f64 {
     if depth < 1e-12 { 1.0 } else { -(-depth).exp_m1() / depth }
 }
@@ -207,7 +209,7 @@ fn count_of(frame: &SweepFrame) -> usize {
     frame.size.iter().map(|&n| n as usize).product()
 }
 
-/// What each ray deposits in each slice: the mean transmittance over it.
+/// Returns the deposit of each ray in each slice: the mean transmittance over it.
 fn march(frame: &SweepFrame, extinction: &[f64]) -> Vec<f64> {
     let of_ray = |ray: usize| {
         let mut transmittance = 1.0;
@@ -220,14 +222,15 @@ fn march(frame: &SweepFrame, extinction: &[f64]) -> Vec<f64> {
     (0..count_of(frame)).into_par_iter().flat_map_iter(of_ray).collect()
 }
 
-/// What is left of each ray where it meets a floor over which places in blocks lie so high: on the mean over the slice in which
-/// that is; all of it before the first, and what has gone through behind the last.
+/// Returns the transmittance of each ray where it meets the floor: the mean over the slice that contains the floor; 1
+/// before the first slice, and that of the whole ray behind the last. `above` returns heights above the floor.
 fn left_at_floor(frame: &SweepFrame, extinction: &[f64], above: impl Fn(DVec3) -> f64 + Sync) -> Vec<f64> {
     let last = frame.slices() - 1;
     let of_ray = |ray: usize| {
         let at = [ray as u32 % frame.size[0], ray as u32 / frame.size[0]];
         let height = |slice: usize| above(frame.block(slice as f64, frame.crossing(at, slice)));
-        // Heights fall evenly along a ray; a grid of one slice has no second one to tell by.
+        // Heights are linear along a ray, so that two positions suffice; the second exists even for a grid of one
+        // slice.
         let next = above(frame.block(1.0, frame.crossing(at, 1)));
         let in_slice = (height(0) / (height(0) - next) + 0.5).floor();
         if in_slice < 0.0 {
@@ -244,7 +247,7 @@ fn left_at_floor(frame: &SweepFrame, extinction: &[f64], above: impl Fn(DVec3) -
     (0..count_of(frame)).into_par_iter().map(of_ray).collect()
 }
 
-/// Between blocks, and to nothing within a block of the grid.
+/// Interpolates trilinearly between blocks, with 0 outside the grid.
 pub(in crate::reference) fn bordered(dims: [usize; 3], values: &[f64], at: DVec3) -> f64 {
     let low = at.floor();
     let share = at - low;
@@ -267,19 +270,19 @@ pub(in crate::reference) fn bordered(dims: [usize; 3], values: &[f64], at: DVec3
     (0..8).map(corner).sum()
 }
 
-/// What of the light gets to a block: between the four rays around it.
+/// Returns the share of light that reaches a block, interpolated between the four rays around it.
 fn passed(frame: &SweepFrame, deposits: &[f64], block: DVec3) -> f64 {
     let (slice, ray) = frame.place(block);
     between_rays(frame, ray, |ray| deposits[ray * frame.slices() + slice as usize])
 }
 
-/// What of the light gets to a place of the floor in blocks, which may lie beside or under the grid.
+/// Returns the share of light that reaches a position of the floor in blocks, which may be outside the grid.
 fn arriving(frame: &SweepFrame, left: &[f64], place: DVec3) -> f64 {
     let (_, ray) = frame.place(place);
     between_rays(frame, ray, |ray| left[ray])
 }
 
-/// Between the four rays around a place among them; beside all of them nothing is in the way.
+/// Interpolates between the four rays around a position; outside all rays light is unattenuated.
 fn between_rays(frame: &SweepFrame, place: DVec2, of_ray: impl Fn(usize) -> f64) -> f64 {
     let low = place.floor();
     let share = place - low;

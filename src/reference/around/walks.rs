@@ -1,5 +1,5 @@
-//! The light within matter by random walks, which know nothing of rays in fixed directions, of bounces or of how their end is
-//! told.
+//! Random walks that estimate light in a medium, independent of fixed directions, of the number of bounces and of the
+//! extrapolated series.
 
 use glam::DVec3;
 
@@ -7,9 +7,9 @@ use super::bounces::Medium;
 use crate::reference::Reference;
 
 impl Reference<'_> {
-    /// The mean light over all directions in a block, by as many random walks of light against its way from there: free ways
-    /// from the extinction between blocks by delta tracking (Woodcock, Murphy, Hemmings and Longworth 1965), directions
-    /// evenly over all. It converges to the truth as walks become more, whatever blocks, rays and bounces others count.
+    /// Estimates the mean light over all directions in a block by backward random walks from there: free paths by
+    /// delta tracking (Woodcock, Murphy, Hemmings and Longworth 1965) through the interpolated extinction, isotropic
+    /// directions. It converges to the true value with the number of walks, independent of other discretisation.
     pub fn light_by_walks(&self, medium: &Medium, at: usize, walks: u32, seed: u64) -> [f64; 3] {
         let lamps = self.lamps();
         let sky = self.settings.sky.radiance(self.settings.camera.up);
@@ -28,7 +28,7 @@ impl Reference<'_> {
                 })
             };
             sum.iter_mut().zip(here(block)).for_each(|(sum, light)| *sum += light);
-            // The first ways are spread evenly, which says more with fewer.
+            // First directions are stratified over the sphere, which reduces variance.
             let mut towards = on_a_sphere(
                 1.0 - f64::from(2 * walk + 1) / f64::from(walks),
                 f64::from(walk) * std::f64::consts::PI * (3.0 - 5f64.sqrt()),
@@ -60,11 +60,11 @@ impl Reference<'_> {
     }
 }
 
-/// Numbers that look random and are the same every time: splitmix64 (Steele, Lea and Flood 2014).
+/// Deterministic pseudo-random numbers: splitmix64 (Steele, Lea and Flood 2014).
 struct Random(u64);
 
 impl Random {
-    /// Above 0, at most 1.
+    /// Returns a number above 0 and at most 1.
     fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut bits = self.0;
@@ -73,13 +73,13 @@ impl Random {
         ((bits ^ (bits >> 31)) >> 11) as f64 / (1u64 << 53) as f64 + f64::EPSILON / 2.0
     }
 
-    /// A unit vector, evenly over the sphere.
+    /// Returns a unit vector, uniform over the sphere.
     fn direction(&mut self) -> DVec3 {
         on_a_sphere(2.0 * self.next() - 1.0, std::f64::consts::TAU * self.next())
     }
 }
 
-/// The unit vector at a height and an angle about the axis.
+/// Returns the unit vector at a height and an angle about the axis.
 fn on_a_sphere(z: f64, angle: f64) -> DVec3 {
     let across = (1.0 - z * z).max(0.0).sqrt();
     DVec3::new(across * angle.cos(), across * angle.sin(), z)

@@ -1,4 +1,4 @@
-//! The picture: sheets composited front to back as seen from the eye (P eq. 9).
+//! Eye pass: sheets composited front to back as seen from the eye (P eq. 9).
 
 mod preintegrated;
 
@@ -16,28 +16,28 @@ use crate::model::{BakedTransfer, THIN_SLABS};
 use crate::plan::SheetFrame;
 use crate::plan::picture_frame;
 
-/// A slab is divided that may make up more than this share of what is seen along a ray.
+/// Share of what is visible along a ray above which a slab is divided.
 const MUCH: f64 = 1.0 / 8.0;
 
-/// The density is expected to change across a slab by this many times what its gradient in the middle says.
+/// Safety factor of the density's expected change across a slab over that of the gradient at its middle.
 const CURVED: f64 = 1.25;
 
-/// So many slabs are held in memory at once.
+/// Number of slabs held in memory at once.
 const SLABS_AT_ONCE: u32 = 32;
 
 impl Reference<'_> {
-    /// The eye's rays and slabs for a picture of some size.
+    /// Returns the eye's rays and slabs for a picture of the given size.
     pub fn eye_frame(&self, size: [u32; 2]) -> SheetFrame {
         picture_frame(self.settings, &self.scene, size)
     }
 
-    /// The mean densities of slab `k`, row by row from the top left.
+    /// Returns the mean densities of slab `k`, row by row from the top left.
     pub fn eye_sheet(&self, size: [u32; 2], k: u32) -> Vec<f64> {
         self.eye_stack(&self.eye_frame(size)).densities(k)
     }
 
-    /// Linear, premultiplied RGBA before tone mapping, row by row from the top left. Attenuation
-    /// volumes are those of the lights in their order, this reference's or another renderer's.
+    /// Renders the picture: linear, premultiplied RGBA before tone mapping, row by row from the top left.
+    /// `attenuations` holds a volume for each light in order, from this reference or another renderer.
     ///
     /// C += T·(1 − e^−τ)·c, T ← T·e^−τ; no ray ends early.
     pub fn picture(&self, size: [u32; 2], attenuations: &[Option<Attenuation>]) -> Vec<[f64; 4]> {
@@ -51,7 +51,7 @@ impl Reference<'_> {
         if self.settings.has_preintegrated_slabs() {
             return self.picture_preintegrated(&stack, &shader);
         }
-        // Colour so far, and in place of alpha the transmittance.
+        // Accumulated colour, with the transmittance in place of alpha.
         let mut rays = vec![[0.0, 0.0, 0.0, 1.0]; stack.pixel_count()];
         let margin = frame.gradient_steps().1;
         for first in (0..frame.slab_count).step_by(SLABS_AT_ONCE as usize) {
@@ -73,7 +73,7 @@ impl Reference<'_> {
                         shader.gradient(sample.point, level)
                     };
                     let density = sheets.at(k)[pixel];
-                    // Faces look to where the solid ends, whichever way its opacity runs.
+                    // Normals of faces point out of the solid, whichever way opacity changes with density.
                     let gradient = gradient + self.ends(&faces, sample.point, level) * shader.turned(density);
                     let color =
                         shader.color(&Sampled { point: sample.point, density, gradient, level }, sample.rgb);
@@ -88,7 +88,7 @@ impl Reference<'_> {
         rays.into_iter().map(|[r, g, b, transmittance]| [r, g, b, 1.0 - transmittance]).collect()
     }
 
-    /// The gradient that ends of solids have of their own: at faces, and where voxels are missing.
+    /// Returns the gradient at the ends of solids: at faces, and at missing voxels.
     fn ends(&self, faces: &Remaining, point: DVec3, level: f64) -> DVec3 {
         self.face_gradient(faces, point, level) + self.missing_gradient(point, level)
     }
@@ -99,7 +99,7 @@ impl Reference<'_> {
     }
 }
 
-/// A ray, so far.
+/// State of a ray during compositing.
 struct Ray {
     pixel: u32,
     /// Linear, premultiplied RGB, and the transmittance.
@@ -107,7 +107,7 @@ struct Ray {
 }
 
 impl Reference<'_> {
-    /// As [`Self::picture`], with slabs of the stack four at a time where no more is needed.
+    /// Renders [`Self::picture`] with slabs by need: four slabs of the stack at a time where that suffices.
     pub(super) fn picture_by_need(&self, stack: &Stack<'_>, shader: &Shader<'_>) -> Vec<[f64; 4]> {
         let table = self.settings.baked_eye(self.range, &self.scene);
         let seen = |pixel: usize| {
@@ -126,7 +126,7 @@ impl Reference<'_> {
         (0..stack.pixel_count()).into_par_iter().map(seen).collect()
     }
 
-    /// Whether one sample may stand for the whole slab that begins at one of the stack.
+    /// Returns true if one sample suffices for the undivided slab that begins at slab `first` of the stack.
     fn is_enough(
         &self,
         stack: &Stack<'_>,
@@ -143,11 +143,11 @@ impl Reference<'_> {
         let point = frame.point(i, j, depth);
         let thickness = f64::from(THIN_SLABS) * frame.slab;
         let density = stack.density_at([i, j, middle]);
-        // Scene space has the length of the ray in it: one unit of depth is 1 / cos θ long there.
+        // Scene space contains the obliquity: one unit of depth is 1 / cos θ long there.
         let along = self.scene.scene_from_index.transform_vector3(frame.direction.at(i, j));
         let change = shader.prefiltered_gradient(point, frame.stretch_level(depth)).dot(along).abs();
         let change = 0.5 * CURVED * thickness * change;
-        // Where there is nothing in the middle nobody asks how much of that is there.
+        // Presence is not evaluated where the middle shows nothing.
         let is_asked = table.sample(density)[3] > 0.0;
         let most_there = if is_asked { self.most_there(stack, along, [i, j, middle]) } else { 1.0 };
         let largest = most_there * table.largest_extinction(density - change, density + change);
@@ -155,9 +155,9 @@ impl Reference<'_> {
         is_whole && share <= MUCH
     }
 
-    /// At most so large a share of the undivided slab around `k` is there, where voxels are missing.
+    /// Returns an upper bound of the presence within the undivided slab around `k`, near missing voxels.
     fn most_there(&self, stack: &Stack<'_>, along: DVec3, [i, j, k]: [f64; 3]) -> f64 {
-        // Voxels that are classified are there by themselves.
+        // The presence of classified voxels is part of their spread extinction.
         if self.presence.is_none() || self.classified.is_some() {
             return 1.0;
         }
@@ -169,7 +169,7 @@ impl Reference<'_> {
         (stack.presence_at([i, j, k]) + 0.5 * CURVED * thickness * rise).min(1.0)
     }
 
-    /// Composites what a slab shows that is `width` of the stack's thick.
+    /// Composites a slab that is `width` slabs of the stack thick.
     fn add_slab(
         &self,
         stack: &Stack<'_>,
@@ -197,7 +197,7 @@ impl Reference<'_> {
     }
 }
 
-/// Some neighbouring sheets of a stack.
+/// Densities of some neighbouring sheets of a stack.
 struct Sheets<'s> {
     frame: &'s SheetFrame,
     first: u32,
@@ -215,8 +215,8 @@ impl<'s> Sheets<'s> {
         &self.densities[(k - self.first) as usize]
     }
 
-    /// The gradient in index space from neighbouring sheets and pixels: what the differences are the
-    /// products of, by Cramer's rule. Nothing lies before the first slab or behind the last.
+    /// Returns the gradient in index space from differences between neighbouring sheets and pixels, by Cramer's rule.
+    /// Densities are 0 before the first slab and behind the last.
     fn gradient(&self, pixel: u32, k: u32) -> DVec3 {
         let [width, height] = self.frame.size;
         let (pixels, slabs) = self.frame.gradient_steps();

@@ -1,4 +1,4 @@
-//! The picture in slabs of two steps, through which opacity is integrated and which are shaded in layers.
+//! Eye pass with pre-integrated slabs: opacity is integrated over slabs of two steps, which are shaded in layers.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -8,10 +8,10 @@ use crate::reference::Reference;
 use crate::reference::shade::{Sampled, Shader};
 use crate::reference::sheet::Stack;
 
-/// Steps of a layer behind which it ends.
+/// Number of steps after which a layer ends.
 const LAYER_STEPS: u32 = 4;
 
-/// Optical depth of its last step below which it ends a step earlier.
+/// Optical depth of the last step below which a layer ends a step earlier.
 const SOFT: f64 = 0.5;
 
 /// Share of a ray above which the steps of a layer count.
@@ -20,25 +20,25 @@ const FAINT: f64 = 1.0 / 16.0;
 /// Optical depth of a step that shows nothing.
 const EMPTY: f64 = 4e-6;
 
-/// Steps that are shaded at once.
+/// Layer: steps that are shaded at once.
 struct Layer {
-    /// Of what is seen along the ray.
+    /// Share of what is visible along the ray.
     share: f64,
-    /// Sum of shares times places, in slabs of the stack.
+    /// Sum of shares times positions, in slabs of the stack.
     places: f64,
     /// Sum of shares times densities.
     densities: f64,
-    /// Steps since it is more than faint.
+    /// Steps since the share is above [`FAINT`].
     steps: u32,
 }
 
 impl Layer {
     const NOTHING: Self = Self { share: 0.0, places: 0.0, densities: 0.0, steps: 0 };
 
-    /// Adds the share that is seen of half a step which begins at a place.
+    /// Adds the visible share of half a step that begins at a position.
     fn add(&mut self, share: f64, place: f64, half: Half) {
         let Half { depth, density } = half;
-        // The quotient approximates 1/τ − 1/(e^τ − 1), the mean place of what is seen of even material.
+        // The quotient approximates 1/τ − 1/(e^τ − 1), the mean position of visible light in a homogeneous medium.
         let within = (6.0 + depth) / (12.0 + depth * (4.0 + depth));
         self.share += share;
         self.places += share * (place + 0.5 * within);
@@ -46,19 +46,19 @@ impl Layer {
     }
 }
 
-/// Half of a step.
+/// One half of a step.
 #[derive(Clone, Copy)]
 struct Half {
-    /// Optical depth.
+    /// Optical depth of the half step.
     depth: f64,
-    /// The mean of those at its ends.
+    /// Mean of the densities at its ends.
     density: f64,
 }
 
-/// A transfer function with its extinction integrated.
+/// Transfer function with its integrated extinction.
 struct Integrated {
     table: BakedTransfer,
-    /// From the first entry to each, with entries 1 apart.
+    /// Integrals from the first entry to each, with a distance of 1 between entries.
     integrals: Vec<f64>,
 }
 
@@ -73,7 +73,7 @@ impl Integrated {
         Self { table, integrals }
     }
 
-    /// Mean extinction between two densities; of close ones, that of the entry nearest to `alike`.
+    /// Returns the mean extinction between two densities; for close ones, that of the entry nearest to `alike`.
     fn mean(&self, from: f64, to: f64, alike: f64) -> f64 {
         let [a, b] = [from, to].map(|density| density.clamp(0.0, 1.0) * (LUT_SIZE - 1) as f64);
         if (b - a).abs() < 1.0 {
@@ -83,7 +83,7 @@ impl Integrated {
         (self.up_to(b) - self.up_to(a)) / (b - a)
     }
 
-    /// The integral up to a position in the table.
+    /// Returns the integral up to a position in the table.
     fn up_to(&self, at: f64) -> f64 {
         let low = (at as usize).min(LUT_SIZE - 2);
         let (first, second) = (self.integrals[low], self.integrals[low + 1]);
@@ -92,7 +92,7 @@ impl Integrated {
 }
 
 impl Reference<'_> {
-    /// As [`Self::picture`], in layers of pre-integrated steps.
+    /// Renders [`Self::picture`] in layers of pre-integrated steps.
     pub(super) fn picture_preintegrated(&self, stack: &Stack<'_>, shader: &Shader<'_>) -> Vec<[f64; 4]> {
         let integrated = Integrated::new(self.settings.baked_eye(self.range, &self.scene));
         let seen = |pixel: usize| self.layers(stack, shader, &integrated, pixel as u32);
@@ -112,7 +112,7 @@ impl Reference<'_> {
         let mut color = DVec3::ZERO;
         let mut left = 1.0;
         let mut layer = Layer::NOTHING;
-        // From the middle of a slab to that of the next.
+        // Each step reaches from the middle of a slab to that of the next.
         for k in -1..=count {
             let halves = Self::halves(stack, integrated, [i, j, k as f64]);
             for (number, half) in halves.into_iter().enumerate() {
@@ -131,7 +131,7 @@ impl Reference<'_> {
         [color.x, color.y, color.z, 1.0 - left]
     }
 
-    /// The halves of a step from the middle of slab `k` to that of the next.
+    /// Returns the halves of a step from the middle of slab `k` to that of the next.
     fn halves(stack: &Stack<'_>, integrated: &Integrated, [i, j, k]: [f64; 3]) -> [Half; 2] {
         let ends = [[i, j, k], [i, j, k + 1.0]];
         let length = stack.length_between(ends);
@@ -144,7 +144,7 @@ impl Reference<'_> {
         })
     }
 
-    /// The light of a layer from where its opacity lies, times its share.
+    /// Shades a layer at its mean position, and multiplies by its share.
     fn shaded_layer(
         &self,
         stack: &Stack<'_>,

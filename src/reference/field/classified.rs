@@ -1,39 +1,39 @@
-//! What the voxels mean, where they are classified before kernels spread them.
+//! Pre-classification: voxels are classified before kernels spread them.
 
 use super::pyramid::Pyramid;
 use super::{Beyond, Field, Rounding};
 use crate::model::BakedTransfer;
 
-/// Whose transfer function classifies.
+/// Transfer function by which voxels are classified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::reference) enum Side {
-    /// What the eye sees.
+    /// Transfer function of the eye.
     Eye,
-    /// What attenuates light, or the colour of it that is followed.
+    /// Transfer function of lights, for the colour channel that is followed.
     Lighting,
-    /// What attenuates light from all around, of which all colours are attenuated alike.
+    /// Transfer function of indirect light, which attenuates all colours alike.
     Around,
 }
 
-/// All of them.
+/// All transfer functions, in the order of their declaration.
 pub(in crate::reference) const SIDES: [Side; 3] = [Side::Eye, Side::Lighting, Side::Around];
 
-/// Voxels as a transfer function classifies them.
+/// Voxels after classification by a transfer function.
 #[derive(Debug, Clone)]
 pub(in crate::reference) struct Classified {
-    /// The extinction as a share of the largest, in place of a density.
+    /// Extinction as a share of the largest, in place of a density.
     pub field: Field,
-    /// The same, spread.
+    /// Pyramid of the shares of extinction.
     pub shares: Pyramid,
-    /// Colours times shares, spread.
+    /// Pyramids of colours times shares, one for each channel.
     pub colors: [Pyramid; 3],
-    /// How much extinction a share is.
+    /// Table that converts a share to extinction.
     pub table: BakedTransfer,
 }
 
 impl Classified {
-    /// Classifies the densities of voxels. `presence` is what is there where some are missing: others stand in for these,
-    /// and what is spread fades with what is there.
+    /// Classifies the densities of voxels. If some are missing, `presence` is their presence pyramid: missing voxels
+    /// have substitute values, and the spread values are multiplied by presence.
     pub(in crate::reference) fn of(
         densities: &Field,
         table: &BakedTransfer,
@@ -58,12 +58,12 @@ impl Classified {
     }
 }
 
-/// A material with its colours weighted by its extinction.
+/// Multiplies the colours of a material by its extinction.
 pub(in crate::reference) fn associated([r, g, b, extinction]: [f64; 4]) -> [f64; 4] {
     [r * extinction, g * extinction, b * extinction, extinction]
 }
 
-/// The reverse.
+/// Divides the colours of a material by its extinction, the inverse of [`associated`].
 pub(in crate::reference) fn straight([r, g, b, extinction]: [f64; 4]) -> [f64; 4] {
     if extinction <= 0.0 { [0.0; 4] } else { [r / extinction, g / extinction, b / extinction, extinction] }
 }

@@ -1,4 +1,4 @@
-//! Densities on a grid, as the renderer stores them, and the trilinear fetch from any grid.
+//! Density field on a grid, as the renderer stores it, and trilinear interpolation in any grid.
 
 pub(in crate::reference) mod classified;
 pub(in crate::reference) mod pyramid;
@@ -7,31 +7,31 @@ use glam::DVec3;
 
 use crate::data::Volume;
 
-/// How a number is rounded when it is stored; for the GPU's half floats, f32 → f16 → f32.
+/// Rounding of a number when it is stored; for the GPU's half floats, f32 → f16 → f32.
 pub type Rounding = fn(f32) -> f32;
 
-/// The densities of a volume, or other numbers on its grid.
+/// Densities of a volume, or other numbers on its grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Field {
-    /// Voxels along x, y, z.
+    /// Number of voxels along x, y, z.
     pub dims: [usize; 3],
     /// One density per voxel, x fastest.
     pub densities: Vec<f64>,
-    /// What is beyond the grid.
+    /// Values outside the grid.
     pub beyond: Beyond,
 }
 
-/// What lies beyond a grid.
+/// Extension of a field outside its grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Beyond {
-    /// The border again.
+    /// Values at the border are repeated (clamp to edge).
     Border,
-    /// 0.
+    /// Values outside the grid are 0.
     Nothing,
 }
 
 impl Field {
-    /// The densities of a volume, each rounded as it will be stored.
+    /// Creates the densities of a volume, each rounded as it will be stored.
     pub fn with_rounding(volume: &Volume, round: impl Fn(f32) -> f32) -> Self {
         let dims = volume.dims();
         let densities = (0..dims[2])
@@ -41,7 +41,7 @@ impl Field {
         Self { dims, densities, beyond: Beyond::Border }
     }
 
-    /// 1 where a voxel is there and 0 where it is missing, if any is.
+    /// Creates the presence of voxels, 1 for present and 0 for missing ones; `None` if no voxel is missing.
     pub(in crate::reference) fn of_presence(volume: &Volume) -> Option<Self> {
         let missing = volume.missing()?;
         let there = |voxel| if missing.contains(voxel) { 0.0 } else { 1.0 };
@@ -49,7 +49,7 @@ impl Field {
         Some(Self { dims: volume.dims(), densities, beyond: Beyond::Nothing })
     }
 
-    /// The density of one voxel, or of what is beyond the grid.
+    /// Returns the density of one voxel, inside the grid or outside.
     pub fn at(&self, x: i64, y: i64, z: i64) -> f64 {
         if self.beyond == Beyond::Nothing && !self.has(x, y, z) {
             return 0.0;
@@ -59,14 +59,14 @@ impl Field {
         self.densities[nearest(x, nx) + nx * (nearest(y, ny) + ny * nearest(z, nz))]
     }
 
-    /// Whether a voxel is in the grid.
+    /// Returns true if a voxel is in the grid.
     pub(in crate::reference) fn has(&self, x: i64, y: i64, z: i64) -> bool {
         [x, y, z].iter().zip(self.dims).all(|(c, n)| (0..n as i64).contains(c))
     }
 }
 
-/// Trilinear interpolation between the eight values around `at`; values lie at integers, and
-/// beyond the outermost ones the outermost counts (clamp to edge).
+/// Interpolates trilinearly between the eight values around `at`; values lie at integers, and are clamped to the edge
+/// outside.
 pub(in crate::reference) fn trilinear(dims: [usize; 3], values: &[f64], at: DVec3) -> f64 {
     let cell = |axis: usize| {
         let last = (dims[axis] - 1) as f64;

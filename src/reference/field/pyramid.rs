@@ -1,22 +1,22 @@
-//! The prefiltered volume and its pyramid: what is sampled where the kernel is stretched (P §4:
-//! "the splatting kernels must be progressively stretched") and what gradients are taken of.
+//! Prefiltered volume and its pyramid, for kernels that perspective stretches (P §4: "the splatting kernels must be
+//! progressively stretched") and for gradients.
 //!
-//! Level 0 is the volume blurred with [a, 1 − 2a, a]³, a = 1/12, on a lattice that begins four
-//! voxels before the grid; a trilinear fetch of it has the variance of the cubic B-spline, ⅓.
-//! Each further level has half the resolution, and a fetch of it four times the variance.
+//! Level 0 is the volume blurred with [a, 1 − 2a, a]³, a = 1/12, on a lattice that begins four voxels before the
+//! grid; a trilinear fetch of it has the variance of the cubic B-spline, ⅓. Each further level has half the
+//! resolution, and a fetch of it four times the variance.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{Field, Rounding, trilinear};
 
-/// The coarsest level: kernels are stretched up to eight times.
+/// Coarsest level: kernels are stretched up to eight times.
 pub(in crate::reference) const MAX_LEVEL: usize = 3;
 
-/// Texels before the grid on every axis.
+/// Texels of padding before the grid on every axis.
 const PAD: usize = 4;
 
-/// The prefiltered volume at full, ½, ¼ and ⅛ resolution.
+/// Prefiltered volume at full, ½, ¼ and ⅛ resolution.
 #[derive(Debug, Clone)]
 pub struct Pyramid {
     levels: Vec<Level>,
@@ -29,13 +29,13 @@ struct Level {
 }
 
 impl Pyramid {
-    /// Blurs a field and halves the result three times. `width` is that of the kernel relative to
-    /// the right one; every level is rounded as it is stored.
+    /// Blurs a field and halves the result three times. `width` is the kernel's width relative to the correct one;
+    /// every level is rounded as it is stored.
     pub fn of(field: &Field, width: f64, rounding: Option<Rounding>) -> Self {
         Self::faded(field, width, rounding, None)
     }
 
-    /// The same, where the blurred field fades with a share of what is there.
+    /// Creates a pyramid as [`Self::of`] does, whose blurred field is multiplied by presence.
     pub(in crate::reference) fn faded(
         field: &Field,
         width: f64,
@@ -59,7 +59,7 @@ impl Pyramid {
         Self { levels }
     }
 
-    /// The same, stored in so many steps from 0 to 1.
+    /// Quantises all values to `steps` steps from 0 to 1.
     pub(in crate::reference) fn in_steps(mut self, steps: f64) -> Self {
         for value in self.levels.iter_mut().flat_map(|level| &mut level.values) {
             *value = (*value * steps).round() / steps;
@@ -67,7 +67,7 @@ impl Pyramid {
         self
     }
 
-    /// How values change from the texel before to the one behind along an axis, level by level.
+    /// Returns the differences between the next and the previous texel along an axis, level by level.
     pub(in crate::reference) fn changes(&self, axis: usize) -> Self {
         let change = |level: &Level| {
             let Level { dims, values } = level;
@@ -84,8 +84,7 @@ impl Pyramid {
         Self { levels: self.levels.iter().map(change).collect() }
     }
 
-    /// The value at an index-space point: trilinear in the two levels around `level`, linear
-    /// between them.
+    /// Returns the value at an index-space point: trilinear in the two levels around `level`, linear between them.
     pub fn fetch(&self, point: DVec3, level: f64) -> f64 {
         let level = level.clamp(0.0, MAX_LEVEL as f64);
         let finer = level as usize;
@@ -94,7 +93,8 @@ impl Pyramid {
         if share == 0.0 { low } else { low + (self.fetch_level(point, finer + 1) - low) * share }
     }
 
-    /// Texture coordinate u = (p + 4.5) / padded dims on every level, so in texels u · dims − ½.
+    /// Interpolates in one level. Texture coordinate u = (p + 4.5) / padded dims on every level, so in texels u ·
+    /// dims − ½.
     fn fetch_level(&self, point: DVec3, level: usize) -> f64 {
         let Level { dims, values } = &self.levels[level];
         let at = (point + PAD as f64 + 0.5) / (1 << level) as f64 - 0.5;
@@ -102,7 +102,7 @@ impl Pyramid {
     }
 }
 
-/// Σ over the 27 neighbours of a, 1 − 2a or a per axis. Variance 2a + 1/6 (the tent's) = ⅓.
+/// Blurs a field: Σ over the 27 neighbours of a, 1 − 2a or a per axis. Variance 2a + 1/6 (the tent's) = ⅓.
 fn prefiltered(field: &Field, width: f64) -> Level {
     let a = (width * width / 3.0 - 1.0 / 6.0) / 2.0;
     let weights = [a, 1.0 - 2.0 * a, a];
@@ -122,8 +122,8 @@ fn prefiltered(field: &Field, width: f64) -> Level {
     Level { dims, values }
 }
 
-/// Half the resolution. Eight trilinear fetches at ± 0.625 texel from the middle of a coarse texel
-/// weigh the finer ones by 1/16, 7/16, 7/16, 1/16 per axis, which adds a variance of ½ texel².
+/// Halves the resolution. Eight trilinear fetches at ± 0.625 texel from the middle of a coarse texel weigh the finer
+/// ones by 1/16, 7/16, 7/16, 1/16 per axis, which adds a variance of ½ texel².
 fn halved(finer: &Level, round: impl Fn(f64) -> f64 + Sync) -> Level {
     const STEP: f64 = 0.625;
     let dims = finer.dims.map(|n| n / 2);
@@ -138,7 +138,7 @@ fn halved(finer: &Level, round: impl Fn(f64) -> f64 + Sync) -> Level {
     Level { dims, values }
 }
 
-/// One value per texel, x fastest, slices in parallel.
+/// Computes one value per texel, x fastest, slices in parallel.
 fn texels(dims: [usize; 3], value: impl Fn([usize; 3]) -> f64 + Sync) -> Vec<f64> {
     let [nx, ny, nz] = dims;
     let row = |z: usize| (0..nx * ny).map(move |n| [n % nx, n / nx, z]);
@@ -156,7 +156,7 @@ mod tests {
         let mut field = Field { dims: [24; 3], densities, beyond: Beyond::Border };
         field.densities[11 + 24 * (12 + 24 * 12)] = 1.0;
         let pyramid = Pyramid::of(&field, 1.0, None);
-        // All phases: sample finely along x through the sums over y and z.
+        // All phases: samples finely along x through the sums over y and z.
         for level in 0..=2usize {
             let step = 0.5;
             let (mut mass, mut mean, mut square) = (0.0, 0.0, 0.0);

@@ -1,5 +1,4 @@
-//! What the crop box and the clip plane leave of a stretch of a ray, and the normals of their faces: a list of
-//! half-spaces in scene space, one after the other.
+//! Crop box and clip plane as half-spaces in scene space: the uncut part of a ray segment, and the normals of faces.
 
 use glam::DVec3;
 
@@ -10,23 +9,24 @@ use crate::reference::{Fault, Reference};
 /// Depth below a face, in voxels, from which material attenuates light fully.
 const SKIN: f64 = 2.0;
 
-/// The half-spaces whose intersection remains: all p with normal · p ≤ offset.
+/// Intersection of half-spaces that remains uncut: all p with normal · p ≤ offset.
 pub(in crate::reference) struct Remaining {
     bounds: Vec<(DVec3, f64)>,
 }
 
 impl Reference<'_> {
-    /// What the eye sees.
+    /// Returns the part visible to the eye.
     pub(in crate::reference) fn seen(&self) -> Remaining {
         self.remaining(&[CutEffect::Removed, CutEffect::Hidden])
     }
 
-    /// What attenuates light.
+    /// Returns the part that attenuates light.
     pub(in crate::reference) fn shading(&self) -> Remaining {
         self.remaining(&[CutEffect::Removed, CutEffect::Shadowless])
     }
 
-    /// Where what the eye sees ends: at cuts, and at the grid's own faces, unless what is there says so already.
+    /// Returns the faces at which visible material ends: cuts, and faces of the grid unless presence already accounts
+    /// for these.
     pub(in crate::reference) fn faces(&self) -> Remaining {
         if self.presence.is_some() || self.classified.is_some() {
             return self.seen();
@@ -45,11 +45,11 @@ impl Reference<'_> {
         Remaining { bounds }
     }
 
-    /// The half-space within a face across an axis of index space, which lies `at` that coordinate and looks along the
+    /// Returns the half-space inside a face across an axis of index space, at coordinate `at`, that faces along the
     /// axis or against it.
     fn face(&self, axis: usize, outward: f64, at: f64) -> (DVec3, f64) {
         let to_scene = |index: DVec3| self.scene.scene_from_index.transform_point3(index);
-        // A face is spanned by the two other axes, and may be no right angle to its own.
+        // A face is spanned by the two other axes, and need not be perpendicular to its own.
         let side = |k: usize| to_scene(DVec3::AXES[(axis + k) % 3]) - to_scene(DVec3::ZERO);
         let across = side(1).cross(side(2)).normalize();
         let normal = across * across.dot(side(0)).signum() * outward;
@@ -77,8 +77,8 @@ impl Reference<'_> {
         Remaining { bounds }
     }
 
-    /// The gradient in scene space of something solid that ends where it is cut: for each face the kernel's
-    /// value, at the distance in voxels.
+    /// Returns the gradient in scene space of a solid that ends at cuts: for each face, the kernel's value at the
+    /// distance in voxels.
     pub(in crate::reference) fn face_gradient(
         &self,
         seen: &Remaining,
@@ -95,8 +95,8 @@ impl Reference<'_> {
         faces.sum()
     }
 
-    /// The share of the material at a point of index space that attenuates light: 3t² − 2t³ of its depth below
-    /// each face, up to [`SKIN`] voxels.
+    /// Returns the share of the material at a point of index space that attenuates light: 3t² − 2t³ of its depth
+    /// below each face, up to [`SKIN`] voxels.
     pub(in crate::reference) fn share_that_shades(&self, remaining: &Remaining, index: DVec3) -> f64 {
         let place = self.scene.scene_from_index.transform_point3(index);
         let shares = remaining.bounds.iter().map(|&(normal, offset)| {
@@ -107,12 +107,12 @@ impl Reference<'_> {
         shares.product()
     }
 
-    /// The share of a straight stretch, between two points of index space, that remains.
+    /// Returns the uncut share of a segment between two points of index space.
     pub(in crate::reference) fn share_of(&self, remaining: &Remaining, from: DVec3, to: DVec3) -> f64 {
         let [from, to] = [from, to].map(|point| self.scene.scene_from_index.transform_point3(point));
         let (mut begin, mut end) = (0.0_f64, 1.0_f64);
         for &(normal, offset) in &remaining.bounds {
-            // How far outside both ends are.
+            // Signed distances of both ends outside the half-space.
             let [a, b] = [from, to].map(|point| normal.dot(point) - offset);
             match (a > 0.0, b > 0.0) {
                 (true, true) => return 0.0,

@@ -1,5 +1,4 @@
-//! What of the volume is there to be seen or to attenuate light: what cuts leave, within the grid, where no voxel is
-//! missing.
+//! Extent of the material: cuts, the faces of the grid, and missing voxels.
 
 pub(super) mod cut;
 mod presence;

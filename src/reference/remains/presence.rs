@@ -1,5 +1,5 @@
-//! How much of what is reconstructed is there: the share of the kernel around a point that lies on voxels. Outside the
-//! grid is no material, whatever a transfer function makes of the field, which goes on there as it is at the border.
+//! Presence: the share of the kernel around a point that lies on present voxels. Outside the grid is no material,
+//! although the density field continues there with the values at the border.
 
 use glam::DVec3;
 
@@ -10,8 +10,9 @@ use crate::reference::kernel::{Profile, quadrature_nodes};
 use crate::reference::{Reference, Weights};
 
 impl Reference<'_> {
-    /// Σ w(v) over the voxels that are there, at an index-space point with the kernel stretched 2^`level` times. Where
-    /// voxels are missing the prefiltered kernel says so, whichever the settings have: a fetch of the pyramid.
+    /// Returns Σ w(v) over the present voxels, at an index-space point with the kernel stretched 2^`level` times. If
+    /// voxels are missing, it is a fetch of the presence pyramid, with the prefiltered kernel whatever the settings
+    /// are.
     pub(in crate::reference) fn presence(&self, profile: &Profile, point: DVec3, level: f64) -> f64 {
         match &self.presence {
             Some(presence) => presence.fetch(point, level),
@@ -19,20 +20,20 @@ impl Reference<'_> {
         }
     }
 
-    /// The share of the kernel within the grid, missing voxels or not.
+    /// Returns the share of the kernel within the grid, regardless of missing voxels.
     pub(in crate::reference) fn presence_in_grid(&self, profile: &Profile, point: DVec3, level: f64) -> f64 {
         let width = level.clamp(0.0, MAX_LEVEL as f64).exp2();
         let along = |axis: usize| {
             let n = self.scene.dims[axis] as f64;
             let before = share_of_half_space(profile, (point[axis] + 0.5) / width);
             let behind = share_of_half_space(profile, (n - 0.5 - point[axis]) / width);
-            // What is missing before and behind do not overlap unless there are fewer voxels than a kernel has.
+            // The parts cut off at both ends overlap only if there are fewer voxels than a kernel covers.
             (before + behind - 1.0).max(0.0)
         };
         along(0) * along(1) * along(2)
     }
 
-    /// ∇ presence in index space: central differences over as many voxels as the kernel is stretched.
+    /// Returns ∇ presence in index space: central differences over the stretched width of a voxel.
     fn presence_slope(&self, profile: &Profile, point: DVec3, level: f64) -> DVec3 {
         let step = level.clamp(0.0, MAX_LEVEL as f64).exp2();
         if let Some(changes) = &self.presence_changes {
@@ -43,7 +44,7 @@ impl Reference<'_> {
         DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z))
     }
 
-    /// The gradient in scene space of something solid that ends where voxels are missing.
+    /// Returns the gradient in scene space of a solid that ends at missing voxels.
     pub(in crate::reference) fn missing_gradient(&self, point: DVec3, level: f64) -> DVec3 {
         if self.presence.is_none() || self.classified.is_some() {
             return DVec3::ZERO;
@@ -52,8 +53,8 @@ impl Reference<'_> {
         self.scene.index_from_scene.matrix3.transpose() * self.presence_slope(&profile, point, level)
     }
 
-    /// The mean over slab `k` along the ray of pixel (i, j) of what `presence` says of a point and a level: where
-    /// densities are taken, or for whole footprints all along.
+    /// Returns the mean of `presence(point, level)` over slab `k` along the ray of pixel (i, j): at the points of the
+    /// densities' quadrature, or for footprints integrated over the slab.
     pub(in crate::reference) fn slab_mean_of(
         &self,
         frame: &SheetFrame,
@@ -73,12 +74,13 @@ impl Reference<'_> {
     }
 }
 
-/// The share of the weights along an axis that lie on voxels 0, 1, 2 …, `depth` voxels behind the edge before voxel 0.
+/// Returns the share of the weights along an axis that lie on voxels 0, 1, 2 …, at a position `depth` voxels behind
+/// the edge before voxel 0.
 fn share_of_half_space(profile: &Profile, depth: f64) -> f64 {
     let place = depth - 0.5;
     let first = place.floor() - 1.0;
     let weights: Vec<f64> = match profile.kernel {
-        // Blur and tent together reach over the same four voxels.
+        // The convolution of blur and tent covers the same four voxels.
         Kernel::Prefiltered => (0..4).map(|tap| profile.of_density(place - first - f64::from(tap))).collect(),
         Kernel::BSpline | Kernel::Gaussian { .. } => profile.four_weights(place - place.floor()).to_vec(),
     };
@@ -105,7 +107,7 @@ mod tests {
                 assert!(share(depth) >= share(depth - 0.1), "{kernel:?} {depth}");
             }
         }
-        // On the outermost voxel: what the kernel has beyond it is missing.
+        // At the outermost voxel, the part of the kernel beyond it is missing.
         let on_voxel = |kernel| share_of_half_space(&Profile { kernel, width: 1.0 }, 0.5);
         assert!((on_voxel(Kernel::BSpline) - 5.0 / 6.0).abs() < 1e-12);
         assert!((on_voxel(Kernel::Prefiltered) - 11.0 / 12.0).abs() < 1e-12);

@@ -1,4 +1,4 @@
-//! What has an exact answer: partition of unity, boxes that light crosses, slabs along chords, thick material.
+//! Tests against exact results: partition of unity, light through boxes, oblique slabs, thick material.
 
 use super::*;
 
@@ -38,8 +38,8 @@ fn footprints_sum_to_one_even_where_they_are_stretched() {
     }
 }
 
-/// Behind the lit face z₀ of a box, back-projected light is
-/// exp(−μ(z₀ − z)) · exp(μ²σ²/2) · sinhc(μΔs/2)^p, with p = 1 for points and 2 for integrated slabs.
+/// Tests that behind the lit face z₀ of a box, back-projected light is exp(−μ(z₀ − z)) · exp(μ²σ²/2) ·
+/// sinhc(μΔs/2)^p, with p = 1 for points and 2 for integrated slabs.
 #[test]
 fn light_in_a_box_follows_beer_and_lambert() {
     for (weights, dims, power) in [(Weights::Gather, [48; 3], 1), (Weights::Footprint, [14, 14, 26], 2)] {
@@ -61,7 +61,7 @@ fn light_in_a_box_follows_beer_and_lambert() {
     }
 }
 
-/// Towards the corners slabs are longer, and light and sight follow the chord.
+/// Tests that attenuation follows the chord for oblique rays, whose slabs are longer.
 #[test]
 fn oblique_light_follows_its_chord() {
     let n = 24;
@@ -80,7 +80,7 @@ fn oblique_light_follows_its_chord() {
     }
 }
 
-/// Looking along the light into something thick shows ½.
+/// Renders thick material seen along the light, which shows ½.
 fn headlight(slab: f64, deposit: Deposit, fault: Fault) -> f64 {
     let mut settings = settings(0.7);
     settings.camera = Camera {
@@ -95,7 +95,7 @@ fn headlight(slab: f64, deposit: Deposit, fault: Fault) -> f64 {
     settings.shading.ambient = 0.0;
     settings.shading.diffuse = 1.0;
     settings.shading.surface_gradient = 1e9;
-    // Air in front of the face: the light volume ends with the grid.
+    // Air in front of the face, as the light volume ends with the grid.
     let thick = volume([12, 12, 32], |p| if p.z < 28.0 { 1.0 } else { 0.0 });
     let reference = Reference::new(&thick, &settings, options(Weights::Gather, fault));
     reference.picture([1, 1], &reference.attenuations())[0][0]

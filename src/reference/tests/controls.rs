@@ -1,4 +1,4 @@
-//! What the settings of shadows do.
+//! Tests of the settings of shadows.
 
 use super::*;
 use crate::model::ShadowAlgorithm;

@@ -1,16 +1,16 @@
-//! Gather against footprints, and both against faulty versions of themselves.
+//! Tests of gather against footprints, and of both against faulty versions of themselves.
 
 use super::*;
 
-/// The red of a picture.
+/// Returns the red channel of a picture.
 fn render(volume: &Volume, settings: &Settings, options: Options) -> Vec<f64> {
     let reference = Reference::new(volume, settings, options);
     let picture = reference.picture([20, 20], &reference.attenuations());
     picture.into_iter().map(|rgba| rgba[0]).collect()
 }
 
-/// How far the gathered light and picture are from those by footprints. Both pictures are lit by the
-/// same light.
+/// Returns the differences of light and picture between gathering and footprints. Both pictures are lit by the same
+/// light.
 fn gap(volume: &Volume, settings: &Settings) -> [f64; 2] {
     let footprint = Reference::new(volume, settings, options(Weights::Footprint, Fault::None));
     let gather = Reference::new(volume, settings, Options::default());

@@ -1,16 +1,16 @@
-//! The mark in films: the comment of an MP4.
+//! Program mark in videos: the comment of an MP4.
 
 use std::fs::File;
 use std::io::{BufReader, Error, Read as _, Result, Seek as _, SeekFrom};
 
 use super::{LONGEST_MARK, MOST_PARTS, is_mark};
 
-/// The boxes, one in the other, in which the comment is, and bytes of each that stand before the boxes in it: `meta`
-/// has a version, and the comment's own data a type and a language.
+/// Path of nested boxes to the comment, with the bytes of each before its inner boxes: `meta` has a version, and the
+/// comment's data a type and a language.
 const WAY: [([u8; 4], u64); 6] =
     [(*b"moov", 0), (*b"udta", 0), (*b"meta", 4), (*b"ilst", 0), (*b"\xa9cmt", 0), (*b"data", 8)];
 
-/// Follows the boxes to the comment, wherever they are.
+/// Follows the nested boxes to the comment, at any position in the file.
 pub(super) fn mp4(mut file: BufReader<File>) -> Result<bool> {
     let mut inside = 0..file.get_ref().metadata()?.len();
     for (kind, before) in WAY {
@@ -23,7 +23,7 @@ pub(super) fn mp4(mut file: BufReader<File>) -> Result<bool> {
     Ok(is_mark(&text))
 }
 
-/// Where the contents of the first box of a kind are, of those that lie side by side.
+/// Finds the first box of a kind among siblings, and returns the range of its contents.
 fn find(
     file: &mut BufReader<File>,
     inside: std::ops::Range<u64>,
@@ -31,7 +31,7 @@ fn find(
 ) -> Result<Option<std::ops::Range<u64>>> {
     let mut at = inside.start;
     for _ in 0..MOST_PARTS {
-        // A length and a kind; there may be bytes behind the last box.
+        // A length and a type; there may be padding after the last box.
         if inside.end.saturating_sub(at) < 8 {
             break;
         }
@@ -40,7 +40,7 @@ fn find(
         file.read_exact(&mut length)?;
         file.read_exact(&mut found)?;
         let (head, length) = match u32::from_be_bytes(length) {
-            // To the end of all.
+            // Extends to the end of the enclosing box.
             0 => (8, inside.end - at),
             1 => {
                 let mut long = [0; 8];

@@ -1,6 +1,6 @@
-//! Files of this program, told from files of others by the mark that they carry.
+//! Detection of files written by this program, by a mark in their metadata.
 //!
-//! The mark counts only where the writers of a format put it: others may write of this program wherever they like.
+//! The mark counts only where the writers of a format put it: files of other programs may mention this one anywhere.
 
 mod film;
 mod pictures;
@@ -16,22 +16,24 @@ use serde::de::IgnoredAny;
 use super::open_regular;
 use crate::model::{MADE_BY, MAX_LOOK_BYTES};
 
-/// Bytes of the longest text that says who made a file: a version stands after the mark.
+/// Length of the longest text with the program mark, in bytes: a version follows the mark.
 const LONGEST_MARK: u64 = 256;
 
-/// Most parts of a file that are stepped over before its mark is given up: a look in EXR has a hundred times fewer.
+/// Maximum number of parts of a file that are skipped in search of the mark: a record in EXR has a hundred times
+/// fewer.
 const MOST_PARTS: usize = 1 << 16;
 
-/// Bytes of the longest JSON that is looked at: reports and looks are shorter.
+/// Length of the longest JSON that is examined, in bytes: reports and looks are shorter.
 const MOST_JSON: u64 = 2 * MAX_LOOK_BYTES as u64;
 
-/// Whether this program has made a file, or nobody: an empty one holds nothing that could be lost. A file that cannot
-/// be read counts as somebody else's.
+/// Returns true if a file was written by this program or is empty, so that nothing is lost by replacing it. A file
+/// that cannot be read counts as another program's.
 pub fn is_ours(path: &Path) -> bool {
     open_regular(path).is_ok_and(|file| has_mark(BufReader::new(file)).unwrap_or(false))
 }
 
-/// Looks for the mark where the format has it, which the first bytes tell. A file that ends too early has none.
+/// Searches for the mark in the place where the format, recognised by its magic bytes, has it. A truncated file has
+/// none.
 fn has_mark(mut file: BufReader<File>) -> std::io::Result<bool> {
     let mut first = Vec::new();
     file.by_ref().take(16).read_to_end(&mut first)?;
@@ -47,7 +49,7 @@ fn has_mark(mut file: BufReader<File>) -> std::io::Result<bool> {
         [b'N', b'R', b'R', b'D', ..] => volumes::nrrd(file),
         [b'O', b'b', b'j', b'e', b'c', b't', b'T', ..] => volumes::metaimage(file),
         [b'<', b'?', b'x', b'm', b'l', ..] => volumes::vti(file),
-        // Their lengths, with which headers of NIfTI begin.
+        // Header sizes (348 and 540), with which NIfTI-1 and NIfTI-2 headers begin.
         [0x5c, 1, 0, 0, ..] | [0x1c, 2, 0, 0, ..] => volumes::nifti(file),
         [0x1f, 0x8b, ..] => volumes::gzip(file),
         [b'I', b'I', 42 | 43, 0, ..] => volumes::tiff(file),
@@ -55,23 +57,23 @@ fn has_mark(mut file: BufReader<File>) -> std::io::Result<bool> {
     }
 }
 
-/// Whether a text says that this program made what it stands in.
+/// Returns true if a text is the program mark, optionally followed by a version.
 fn is_mark(text: &[u8]) -> bool {
     text.strip_prefix(MADE_BY.as_bytes()).is_some_and(|rest| rest.is_empty() || rest.starts_with(b", "))
 }
 
-/// What tells a look or a report; nothing else of it is kept.
+/// Fields that identify a look or a report; all others are ignored.
 #[derive(Deserialize)]
 struct Told {
     #[serde(rename = "_made_by")]
     made_by: Option<String>,
-    // Sessions and presets of versions without the mark have all of these.
+    // Sessions and presets of versions without the mark have all three fields.
     schema: Option<IgnoredAny>,
     camera: Option<IgnoredAny>,
     shadows: Option<IgnoredAny>,
 }
 
-/// The field of an object that says it.
+/// Searches for the mark in the `_made_by` field of a JSON object.
 fn json(file: BufReader<File>) -> std::io::Result<bool> {
     let mut bytes = Vec::new();
     file.take(MOST_JSON + 1).read_to_end(&mut bytes)?;

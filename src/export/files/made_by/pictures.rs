@@ -1,20 +1,20 @@
-//! The mark in pictures: a text of PNG, a comment of GIF, an attribute of EXR. All stand before the pixels.
+//! Program mark in pictures: a PNG text, a GIF comment, an EXR attribute. All of them precede the pixels.
 
 use std::fs::File;
 use std::io::{BufRead as _, BufReader, Read as _, Result};
 
 use super::{LONGEST_MARK, MOST_PARTS, is_mark};
 
-/// Keyword of the text that says which program made a PNG.
+/// Keyword of the PNG text that names the writing program.
 const SOFTWARE: &[u8] = b"Software\0";
 
-/// Keyword of the look that PNG pictures carry, those of versions without the mark too.
+/// Keyword of the record in PNG pictures, including those of versions without the mark.
 const LOOK_IN_PNG: &[u8] = b"chiaroscuro\0";
 
-/// Name of the first piece of the look that EXR pictures carry, those of versions without the mark too.
+/// Name of the first piece of the record in EXR pictures, including those of versions without the mark.
 const LOOK_IN_EXR: &[u8] = b"chiaroscuro.000\0";
 
-/// Bytes of the longest name of an EXR attribute, and of its kind.
+/// Length of the longest name or type of an EXR attribute, in bytes.
 const LONGEST_NAME: u64 = 256;
 
 fn array<const N: usize>(file: &mut BufReader<File>) -> Result<[u8; N]> {
@@ -23,7 +23,8 @@ fn array<const N: usize>(file: &mut BufReader<File>) -> Result<[u8; N]> {
     Ok(bytes)
 }
 
-/// As many bytes of a part as a mark can have, of which so many have been read when this returns.
+/// Reads the beginning of a part of the given length: as many bytes as a mark can have. The result's length is the
+/// number of bytes consumed.
 fn beginning(file: &mut BufReader<File>, length: u64) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     file.take(length.min(LONGEST_MARK)).read_to_end(&mut bytes)?;
@@ -34,7 +35,7 @@ fn skip(file: &mut BufReader<File>, bytes: u64) -> Result<()> {
     file.seek_relative(i64::try_from(bytes).map_err(std::io::Error::other)?)
 }
 
-/// Chunks: length, kind, contents, check sum.
+/// Searches the chunks of a PNG: length, type, contents, checksum.
 pub(super) fn png(mut file: BufReader<File>) -> Result<bool> {
     skip(&mut file, 8)?;
     for _ in 0..MOST_PARTS {
@@ -57,12 +58,12 @@ pub(super) fn png(mut file: BufReader<File>) -> Result<bool> {
     Ok(false)
 }
 
-/// Blocks before the first picture: extensions, each of which has runs of up to 255 bytes.
+/// Searches the blocks before the first picture of a GIF: extensions, each with sub-blocks of up to 255 bytes.
 pub(super) fn gif(mut file: BufReader<File>) -> Result<bool> {
     skip(&mut file, 10)?;
     let [flags, _, _] = array(&mut file)?;
     if flags & 0x80 != 0 {
-        // Three bytes for each of 2 to 256 colours.
+        // Colour table: three bytes for each of 2 to 256 colours.
         skip(&mut file, 3 << ((flags & 7) + 1))?;
     }
     for _ in 0..MOST_PARTS {
@@ -89,7 +90,7 @@ pub(super) fn gif(mut file: BufReader<File>) -> Result<bool> {
     Ok(false)
 }
 
-/// Attributes: name, kind, length, and as many bytes; an empty name ends them.
+/// Searches the attributes of an EXR: name, type, length, and the value; an empty name ends the header.
 pub(super) fn exr(mut file: BufReader<File>) -> Result<bool> {
     skip(&mut file, 8)?;
     for _ in 0..MOST_PARTS {

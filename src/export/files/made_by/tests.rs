@@ -1,4 +1,4 @@
-//! Files of ours by every writer, and files of others that only speak of this program.
+//! Tests with files of every writer of this program, and files of other programs that only mention it.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::export::{
 };
 use crate::model::{Depth, ImageSpec, Record, Settings, made_by, tells_maker};
 
-/// Whether a file with these contents is ours.
+/// Returns true if a file with these contents is recognised as this program's.
 fn is_ours_with(contents: impl AsRef<[u8]>) -> bool {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("file");
@@ -18,8 +18,8 @@ fn is_ours_with(contents: impl AsRef<[u8]>) -> bool {
     is_ours(&path)
 }
 
-/// Contents that are ours; that they are not when they are cut off before the mark, or are of somebody else, shows
-/// that the mark is what tells.
+/// Checks that contents are recognised, and are not after truncation before the mark or a change of it: nothing but
+/// the mark decides.
 fn check_ours(contents: &[u8]) {
     assert!(is_ours_with(contents));
     let mark = MADE_BY.as_bytes();
@@ -50,7 +50,7 @@ fn pictures_of_ours_are_known() {
 fn volumes_of_ours_are_known() {
     let folder = tempfile::tempdir().unwrap();
     let volume = Volume::with_spacing("t", [2, 1, 1], glam::DVec3::ONE, Samples::U8(vec![1, 2])).unwrap();
-    // An axis that is longer than NIfTI-1 can say, too.
+    // Includes an axis too long for NIfTI-1.
     let long = Samples::U8((0..40_000).map(|at| at as u8).collect());
     let long = Volume::with_spacing("t", [40_000, 1, 1], glam::DVec3::ONE, long).unwrap();
     for (name, volume) in [("a.nrrd", &volume), ("a.mha", &volume), ("a.nii", &volume), ("b.nii", &long)]
@@ -62,7 +62,7 @@ fn volumes_of_ours_are_known() {
         write_volume(&path, format, &Outgoing::of(volume), false).unwrap();
         let bytes = std::fs::read(&path).unwrap();
         match name {
-            // There is no place for a mark in it.
+            // The format has no metadata for a mark.
             "a.npy" => assert!(!is_ours(&path)),
             "a.nii.gz" => {
                 assert!(is_ours(&path));
@@ -84,14 +84,14 @@ fn volumes_of_others_that_speak_of_it_are_not_ours() {
     ] {
         assert!(!is_ours_with(&text), "{text}");
     }
-    // A header of NIfTI, with the mark as the description and without an extension.
+    // NIfTI header with the mark as its description, without an extension.
     let mut header = vec![0; 400];
     header[..4].copy_from_slice(&348i32.to_le_bytes());
     header[344..348].copy_from_slice(b"n+1\0");
     header[148..148 + mark.len()].copy_from_slice(mark.as_bytes());
     header[360..360 + mark.len()].copy_from_slice(mark.as_bytes());
     assert!(!is_ours_with(&header));
-    // Places beyond the end of a TIFF file.
+    // Offsets beyond the end of a TIFF file.
     for bytes in [
         &b"II*\0\xff\xff\xff\xff"[..],
         b"II+\0\x08\0\0\0\xff\xff\xff\xff\xff\xff\xff\xff",
@@ -108,7 +108,7 @@ fn films_of_ours_are_known() {
         let path = folder.path().join(name);
         let reel = AnimationSpec { size: [2, 1], frames: 1, rate: 25, transparent: false };
         let mut film = Animation::create(&path, &reel).unwrap();
-        // A look would tell as well.
+        // An empty record, since a record would be recognised as well.
         film.add(&[9; 8], "").unwrap();
         film.finish().unwrap();
         check_ours(&std::fs::read(&path).unwrap());
@@ -117,7 +117,7 @@ fn films_of_ours_are_known() {
 
 #[test]
 fn texts_of_ours_are_known() {
-    // A session or a preset; one without a mark is of an earlier version.
+    // A session or preset without a mark is from an earlier version.
     assert!(is_ours_with(Record::text(&Settings::default(), None, None)));
     check_ours(tells_maker(serde_json::json!({"shadows": {"gain": 2.0}})).to_string().as_bytes());
     check_ours(tells_maker(serde_json::json!({"image_size": [1, 2]})).to_string().as_bytes());
@@ -125,17 +125,17 @@ fn texts_of_ours_are_known() {
     assert!(is_ours_with(b""), "an empty file holds nothing");
 }
 
-/// A box of an MP4.
+/// Returns an MP4 box with the given type and contents.
 fn boxed(kind: [u8; 4], contents: &[u8]) -> Vec<u8> {
     [&(contents.len() as u32 + 8).to_be_bytes(), &kind[..], contents].concat()
 }
 
-/// A box with its length in eight bytes.
+/// Returns an MP4 box with a 64-bit length.
 fn long_box(kind: [u8; 4], contents: &[u8]) -> Vec<u8> {
     [&1_u32.to_be_bytes(), &kind[..], &(contents.len() as u64 + 16).to_be_bytes(), contents].concat()
 }
 
-/// The head of a film whose item of some kind says something.
+/// Returns the `moov` box of a video with one metadata item.
 fn head(item: [u8; 4], text: &str) -> Vec<u8> {
     let data = boxed(*b"data", &[&[0, 0, 0, 1, 0, 0, 0, 0], text.as_bytes()].concat());
     let items = [boxed(*b"\xa9too", &boxed(*b"data", &[0; 12])), boxed(item, &data)].concat();
@@ -157,7 +157,7 @@ fn films_in_mp4_are_known_by_their_comment() {
         head(*b"\xa9cmt", &format!("made with {}", made_by())),
         boxed(*b"mdat", &ours),
         boxed(*b"free", made_by().as_bytes()),
-        // Longer than the file.
+        // Boxes longer than the file, or with invalid lengths.
         [&[0xff; 4], &b"moov"[..], &ours].concat(),
         [&1_u32.to_be_bytes(), &b"moov"[..], &[0xff; 8], &ours].concat(),
         [&[0, 0, 0, 3], &b"moov"[..], &ours].concat(),
@@ -189,7 +189,7 @@ fn who_writes_of_the_program_is_not_the_program() {
     }
 }
 
-/// A file of a writer that another has changed where `from` stood.
+/// Returns a copy of a file in which `from` has been replaced by `to`, of equal length.
 fn swapped(contents: &[u8], from: &[u8], to: &[u8]) -> Vec<u8> {
     assert_eq!(from.len(), to.len());
     let at = contents.windows(from.len()).position(|window| window == from).unwrap();
@@ -199,7 +199,7 @@ fn swapped(contents: &[u8], from: &[u8], to: &[u8]) -> Vec<u8> {
 #[test]
 fn pictures_that_hold_the_mark_elsewhere_are_of_others() {
     let plain = encode_png([2, 1], png::ColorType::Rgb, &[0; 6], None).unwrap();
-    // In another text, in a chunk that others have thought of, and behind the pixels.
+    // In another text, in a private chunk, and after the pixels.
     for (from, to) in [(&b"tEXtSoftware"[..], &b"tEXtComments"[..]), (b"tEXtSoftware", b"prVtSoftware")] {
         assert!(!is_ours_with(swapped(&plain, from, to)));
     }
@@ -208,7 +208,7 @@ fn pictures_that_hold_the_mark_elsewhere_are_of_others() {
     let length = u32::from_be_bytes(plain[at..at + 4].try_into().unwrap()) as usize + 12;
     let (mark, rest) = (&plain[at..at + length], [&plain[..at], &plain[at + length..]].concat());
     assert!(!is_ours_with([&rest[..], mark].concat()));
-    // As pixels, which are stored as they are.
+    // As pixels, which are stored uncompressed.
     let line = [MADE_BY.as_bytes(), &[0; 2]].concat();
     let mut png = Vec::new();
     let mut encoder = png::Encoder::new(&mut png, line.len() as u32, 1);
@@ -219,7 +219,7 @@ fn pictures_that_hold_the_mark_elsewhere_are_of_others() {
     writer.write_image_data(&line).unwrap();
     writer.finish().unwrap();
     assert!(png.windows(MADE_BY.len()).any(|window| window == MADE_BY.as_bytes()) && !is_ours_with(&png));
-    // An application's block of a GIF; an EXR that names another attribute.
+    // An application extension of a GIF; another attribute of an EXR.
     let gif = |kind: u8| {
         let text = made_by();
         [&b"GIF89a\x01\0\x01\0\0\0\0\x21"[..], &[kind, text.len() as u8], text.as_bytes(), b"\0\x3b"].concat()
@@ -236,7 +236,7 @@ fn pictures_that_hold_the_mark_elsewhere_are_of_others() {
 
 #[test]
 fn files_of_earlier_versions_are_known() {
-    // Without a mark, but with a look.
+    // Without the mark, but with a record.
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.png");
     export_png([1, 1], &[0; 4], false, Some("{}"), &path).unwrap();

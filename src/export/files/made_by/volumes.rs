@@ -1,5 +1,5 @@
-//! The mark in volumes: a comment of NRRD, of `NIfTI` and of VTK's XML, a field of `MetaImage`, a text of TIFF. `NumPy`'s
-//! arrays have no place for one.
+//! Program mark in volumes: a comment in NRRD, `NIfTI` and VTK's XML, a field of `MetaImage`, a text of TIFF. `NumPy`
+//! arrays have no metadata for it.
 
 use std::fs::File;
 use std::io::{BufRead as _, BufReader, Error, Read, Result, Seek as _, SeekFrom};
@@ -8,29 +8,29 @@ use flate2::bufread::MultiGzDecoder;
 
 use super::{LONGEST_MARK, MOST_PARTS, is_mark};
 
-/// The field of `MetaImage` that says it: Software Versions of DICOM.
+/// `MetaImage` field with the mark, named by the tag of DICOM's Software Versions.
 const FIELD: &[u8] = b"0018|1020 = ";
 
-/// What stands before and behind the comment of VTK's XML.
+/// Bytes before and after the comment in VTK's XML.
 const AROUND_COMMENT: [&[u8]; 2] = [b"<?xml version=\"1.0\"?>\n<!-- ", b" -->\n"];
 
-/// Bytes of the headers of NIfTI-1 and NIfTI-2, with which they begin.
+/// Sizes of the NIfTI-1 and NIfTI-2 headers in bytes, which are also their first field.
 const NIFTI_1: usize = 348;
 const NIFTI_2: usize = 540;
 
-/// Bytes between a header of `NIfTI` and its first extension; the first of them says that there is one.
+/// Bytes between a `NIfTI` header and its first extension; the first byte is non-zero if there is one.
 const EXTENDER: usize = 4;
 
-/// Bytes of an extension before its text: its length, and its kind.
+/// Bytes before the text of an extension: its size and its code.
 const BEFORE_TEXT: usize = 8;
 
-/// The kind of an extension that is text (`NIFTI_ECODE_COMMENT`).
+/// Extension code of plain text (`NIFTI_ECODE_COMMENT`).
 const COMMENT: u32 = 6;
 
-/// TIFF's tag of the text that says which program made a file.
+/// TIFF tag of the text that names the writing program.
 const SOFTWARE: u16 = 305;
 
-/// The comment that follows the first line.
+/// Searches for the mark in the comment after the first line of an NRRD.
 pub(super) fn nrrd(file: BufReader<File>) -> Result<bool> {
     let mut lines = file.take(2 * LONGEST_MARK);
     let mut line = Vec::new();
@@ -41,7 +41,7 @@ pub(super) fn nrrd(file: BufReader<File>) -> Result<bool> {
     Ok(is_mark(text.trim_ascii_end()))
 }
 
-/// A field of the first ones.
+/// Searches for the mark among the first fields of a `MetaImage`.
 pub(super) fn metaimage(file: BufReader<File>) -> Result<bool> {
     for line in file.take(2 * LONGEST_MARK).split(b'\n') {
         let line = line?;
@@ -55,7 +55,7 @@ pub(super) fn metaimage(file: BufReader<File>) -> Result<bool> {
     Ok(false)
 }
 
-/// The comment behind the declaration.
+/// Searches for the mark in the comment after the XML declaration.
 pub(super) fn vti(file: BufReader<File>) -> Result<bool> {
     let mut bytes = Vec::new();
     file.take(2 * LONGEST_MARK).read_to_end(&mut bytes)?;
@@ -65,7 +65,7 @@ pub(super) fn vti(file: BufReader<File>) -> Result<bool> {
     Ok(end.is_some_and(|end| is_mark(&rest[..end])))
 }
 
-/// The first extension.
+/// Searches for the mark in the first extension of a `NIfTI` file.
 pub(super) fn nifti(file: impl Read) -> Result<bool> {
     let most = (NIFTI_2 + EXTENDER + BEFORE_TEXT) as u64 + LONGEST_MARK;
     let mut bytes = Vec::new();
@@ -87,16 +87,16 @@ pub(super) fn nifti(file: impl Read) -> Result<bool> {
     let (Some(length), true, Some(COMMENT)) = (length, has_one, kind) else { return Ok(false) };
     let text = bytes.get(extension + BEFORE_TEXT..).unwrap_or_default();
     let text = &text[..text.len().min((length as usize).saturating_sub(BEFORE_TEXT))];
-    // Zeros fill it up.
+    // The text is padded with zeros.
     Ok(is_mark(text.split(|&byte| byte == 0).next().unwrap_or_default()))
 }
 
-/// As [`nifti`], of a file that is compressed as a whole.
+/// Decompresses a gzip file and continues like [`nifti`].
 pub(super) fn gzip(file: BufReader<File>) -> Result<bool> {
     nifti(MultiGzDecoder::new(file))
 }
 
-/// A text of the first page.
+/// Searches for the mark in the Software tag of the first page of a TIFF.
 pub(super) fn tiff(mut file: BufReader<File>) -> Result<bool> {
     let mut head = [0; 4];
     file.read_exact(&mut head)?;
@@ -131,7 +131,7 @@ fn array<const N: usize>(file: &mut BufReader<File>) -> Result<[u8; N]> {
     Ok(bytes)
 }
 
-/// A place, in as many bytes as the file counts with.
+/// Reads an offset of 4 bytes, or of 8 in a `BigTIFF`.
 fn word(file: &mut BufReader<File>, is_big: bool) -> Result<u64> {
     if is_big { Ok(u64::from_le_bytes(array(file)?)) } else { Ok(u32::from_le_bytes(array(file)?).into()) }
 }

@@ -1,4 +1,5 @@
-//! Other number types: exactly or not at all, or a range of values on all numbers of a type.
+//! Tests of conversions between number types: exact or rejected, or a range of values mapped to the full range of a
+//! type.
 
 use super::*;
 use crate::data::ValueRange;
@@ -12,7 +13,7 @@ fn line(samples: Samples) -> Volume {
     Volume::new("scan", dims, DAffine3::IDENTITY, samples).unwrap()
 }
 
-/// The voxels of a volume in other numbers, and the padding that is stated.
+/// Returns the converted voxels of a volume, and the padding value in its metadata.
 fn converted(volume: &Volume, wish: &NumberWish) -> Result<(Samples, Option<f64>), ConvertError> {
     let outgoing = Outgoing::of(volume).in_numbers(wish)?;
     let found = read(&written(VolumeFormat::Nrrd, &outgoing, false));
@@ -24,7 +25,7 @@ fn converted(volume: &Volume, wish: &NumberWish) -> Result<(Samples, Option<f64>
 fn whole_numbers_are_exact_or_refused() {
     for from in VoxelType::ALL {
         for to in VoxelType::ALL {
-            // Small numbers fit everywhere.
+            // Small numbers fit into every type.
             let few = line(samples(from)).samples().clone();
             let small: Vec<f64> = (0..few.len()).map(|at| (at % 100) as f64).collect();
             let volume = line(Samples::F64(small.clone()));
@@ -32,7 +33,7 @@ fn whole_numbers_are_exact_or_refused() {
             let volume = read(&written(VolumeFormat::Nrrd, &first, false));
             let (found, _) = converted(&volume, &wish(to)).unwrap();
             assert!((0..found.len()).all(|at| found.value(at) == small[at]), "{from:?} {to:?}");
-            // All numbers of a type fit as a whole where each of them does.
+            // The full range of a type fits if each of its numbers does.
             let volume = line(few.clone());
             let is_float = |kind| matches!(kind, VoxelType::F32 | VoxelType::F64);
             if is_float(from) {
@@ -88,7 +89,7 @@ fn what_does_not_fit_is_refused_with_a_remedy() {
         let wish = NumberWish { padding: Some(padding), ..wish(VoxelType::U8) };
         assert!(matches!(converted(&whole, &wish), Err(ConvertError::BadPadding { .. })), "{padding}");
     }
-    // Fractions are rounded to the nearest of the shorter floats.
+    // Fractions are rounded to the nearest 32-bit float.
     let tenths = line(Samples::F64(vec![0.1, f64::NAN]));
     let (found, _) = converted(&tenths, &wish(VoxelType::F32)).unwrap();
     assert!(found.value(0) == f64::from(0.1f32) && found.value(1).is_nan());
@@ -106,11 +107,11 @@ fn a_range_of_values_becomes_all_numbers_of_a_type() {
     // The middle lies between −1 and 0.
     let (found, _) = converted(&line(Samples::F64(values.clone())), &onto(VoxelType::I32)).unwrap();
     assert_eq!(found, Samples::I32(vec![i32::MIN, i32::MIN, -1, i32::MAX, i32::MAX]));
-    // Rounding alone: a range that is all of the type.
+    // Only rounding: the range equals that of the type.
     let same = NumberWish { rescaled: Some(ValueRange::new(-32768.0, 32767.0)), ..wish(VoxelType::I16) };
     let (found, _) = converted(&line(Samples::F32(vec![1.4, -2.6, 1e6])), &same).unwrap();
     assert_eq!(found, Samples::I16(vec![1, -3, 32767]));
-    // Voxels that hold nothing have a number of their own, and values never become that.
+    // Missing voxels get a number of their own, which no value is mapped to.
     let gaps = [values, vec![f64::NAN]].concat();
     let (found, padding) = converted(&line(Samples::F64(gaps.clone())), &onto(VoxelType::U8)).unwrap();
     assert_eq!((found, padding), (Samples::U8(vec![1, 1, 128, 255, 255, 0]), Some(0.0)));
@@ -127,10 +128,10 @@ fn padding_goes_along() {
     let (found, padding) = converted(&ct, &other).unwrap();
     assert_eq!((found, padding), (Samples::I16(vec![-2000, -1000, 0, 200]), Some(-2000.0)));
     assert!(converted(&ct, &wish(VoxelType::U8)).is_err());
-    // No voxel has it, and the new type has not either.
+    // No voxel has the padding value, and the new type cannot represent it.
     let none = line(Samples::I16(vec![0, 1, 200])).with_padding(-3024.0).unwrap();
     assert_eq!(converted(&none, &wish(VoxelType::U8)).unwrap(), (Samples::U8(vec![0, 1, 200]), None));
-    // Values that are spread mean something else.
+    // Rescaled values lose their meaning.
     let mut hints = Hints::default();
     hints.set_unit("HU");
     hints.modality = Modality::Ct;

@@ -1,10 +1,10 @@
-//! Every format, number type and orientation: what is written is what is read.
+//! Tests of every format, number type and orientation: volumes read back equal the written ones.
 
 use super::*;
 use crate::data::Headings;
 use crate::export::is_ours;
 
-/// How near affines must be, by the numbers that they are written in: those of NIfTI-1 have 24 bits.
+/// Relative tolerance of affines, by the numbers that a format stores: those of NIfTI-1 have 24 bits.
 fn tolerance(format: VolumeFormat) -> f64 {
     match format {
         VolumeFormat::Nifti | VolumeFormat::NiftiGzip => f64::from(f32::EPSILON),
@@ -12,12 +12,12 @@ fn tolerance(format: VolumeFormat) -> f64 {
     }
 }
 
-/// Whether a format says which way axes go and where they begin.
+/// Returns true if a format stores orientation and origin.
 fn has_place(format: VolumeFormat) -> bool {
     !matches!(format, VolumeFormat::Tiff | VolumeFormat::Npy)
 }
 
-/// As much of a volume as a format has room for.
+/// Returns the part of a volume that a format can store.
 fn kept(format: VolumeFormat, volume: &Outgoing<'_>, samples: &Samples) -> Volume {
     let world = match format {
         VolumeFormat::Tiff => DAffine3::from_mat3(DMat3::from_diagonal(volume.spacing_mm().into())),
@@ -27,7 +27,7 @@ fn kept(format: VolumeFormat, volume: &Outgoing<'_>, samples: &Samples) -> Volum
     Volume::new("scan", volume.dims(), world, samples.clone()).unwrap()
 }
 
-/// The voxels of a turned volume, by their places in the world.
+/// Returns the voxels of a reoriented volume, looked up by their world positions.
 fn turned(volume: &Volume, outgoing: &Outgoing<'_>) -> Samples {
     let index_from_turned = volume.world_from_index().inverse() * outgoing.world_from_index();
     let [nx, ny, nz] = outgoing.dims();
@@ -103,7 +103,7 @@ fn a_wrong_voxel_a_wrong_place_and_a_wrong_type_are_noticed() {
     let other = volume(samples(VoxelType::I16), askew());
     assert!(difference(&other, &right, 1e-6).is_some());
     assert_eq!(difference(&right, &right.clone(), 0.0), None);
-    // Turned the wrong way it is another volume.
+    // A wrong reorientation gives another volume.
     let body = right.clone().with_anatomy(true);
     let file =
         written(VolumeFormat::Nrrd, &Outgoing::of(&body).oriented("LPS".parse().unwrap()).unwrap(), false);
@@ -121,7 +121,7 @@ fn what_nobody_knows_stays_unknown() {
         assert_eq!(difference(&found, &nowhere, 0.0), None, "{format:?}");
         assert_eq!(format.lost(&outgoing), Vec::<&str>::new(), "{format:?}");
     }
-    // How lengths compare is known, and where a part of it was.
+    // Relative lengths are known, and the position of a part in the whole.
     let part = place(DAffine3 {
         matrix3: DMat3::from_diagonal(DVec3::new(1.0, 1.0, 2.5)),
         translation: DVec3::new(10.0, 0.0, 5.0),
@@ -143,7 +143,7 @@ fn what_nobody_knows_stays_unknown() {
     }
 }
 
-/// All that can be known of values.
+/// Returns hints with every kind of metadata.
 fn all_hints() -> Hints {
     let mut hints = Hints::default();
     hints.modality = Modality::Mr;
@@ -188,7 +188,7 @@ fn what_is_known_of_values_is_kept_where_it_has_a_place() {
         }
     }
     assert_eq!(read(&written(VolumeFormat::Nrrd, &outgoing, true)).hints(), &hints);
-    // A unit is there where values mean something.
+    // The unit follows from the meaning of the values.
     let mut hints = Hints::default();
     hints.meaning = Meaning::HounsfieldUnits;
     let ct = volume(samples(VoxelType::I16), askew()).with_hints(hints);
@@ -213,7 +213,7 @@ fn labels_have_their_names_in_nrrd() {
 
 #[test]
 fn long_axes_and_small_voxels_have_their_forms() {
-    // More than 16 bits count: NIfTI-2.
+    // More voxels than 16 bits can count: NIfTI-2.
     let long: Vec<u8> = (0..40_000 * 2).map(|at| (at % 251) as u8).collect();
     let world = DAffine3 { translation: DVec3::new(1.0 / 3.0, 0.1, 1e5), ..askew() };
     let long = Volume::new("scan", [40_000, 2, 1], world, Samples::U8(long)).unwrap().with_anatomy(true);
@@ -222,13 +222,13 @@ fn long_axes_and_small_voxels_have_their_forms() {
         assert_eq!(difference(&read(&file), &long, 1e-15), None, "64-bit numbers");
         assert!(is_ours(&file.path));
     }
-    // Micrometres in TIFF.
+    // Spacings in TIFF are written in micrometres.
     let small = DAffine3::from_mat3(DMat3::from_diagonal(DVec3::new(0.000_65, 0.000_65, 0.002)));
     let small = volume(samples(VoxelType::U16), small);
     let file = written(VolumeFormat::Tiff, &Outgoing::of(&small), false);
     assert_eq!(difference(&read(&file), &small, 1e-12), None);
     assert!(std::fs::read(&file.path).unwrap().windows(12).any(|text| text == b"unit=micron\n"));
-    // One slice alone, and one voxel.
+    // A single slice, and single rows of voxels.
     for dims in [[5, 12, 1], [1, 1, 60], [60, 1, 1]] {
         let flat = Volume::new("scan", dims, DAffine3::IDENTITY, samples(VoxelType::I16)).unwrap();
         let flat = flat.with_unknown_scale();
