@@ -1,10 +1,10 @@
-//! The window.
+//! Main window of the viewer, built on egui and wgpu (feature `window`).
 //!
-//! Panels change one [`Settings`] value; the viewport turns it into a picture. Whatever renders does so on a thread
-//! beside the window's: the render worker, the loader, the search for lights, exports, contact sheets, slices of light
-//! volumes, and the measurement of the brightness. So does what goes through all voxels: first looks for another kind of
-//! data, and of an object that stands another way up; and what reads files of others, looks and sessions included.
-//! Panels see settings and read-only facts.
+//! Panels change one [`Settings`] value; the viewport turns it into a picture. All rendering runs on threads beside
+//! the window's: the render worker, the loader, the light search, exports, contact sheets, slices of light volumes,
+//! and the measurement of brightness. So does everything that visits all voxels (first looks for another kind of
+//! data, or for an object that stands another way up) and everything that reads untrusted files, looks and sessions
+//! included. Panels see settings and read-only facts.
 
 mod common;
 mod kept;
@@ -88,13 +88,13 @@ use crate::data::Dataset;
 use crate::gpu::{Context, GpuError, WindowPainter};
 use crate::model::Settings;
 
-/// A frame that keeps the window's thread longer is felt.
+/// Duration of a frame on the window's thread, in ms, from which on the delay is felt and logged.
 const LONG_FRAME_MS: f64 = 50.0;
 
-/// The window's state.
+/// State of the main window, which implements [`eframe::App`].
 pub struct App {
     settings: Settings,
-    /// The first look at the open volume: what reset buttons put back.
+    /// First look at the open volume, which the reset buttons restore.
     defaults: Settings,
     volume: Option<VolumeFacts>,
     treated: Treated,
@@ -102,26 +102,26 @@ pub struct App {
     corrected: Corrected,
     framed: Framed,
     viewport: Viewport,
-    /// Fills the window's background.
+    /// Painter of the window's background colour.
     window: WindowPainter,
-    /// The device that draws the window.
+    /// Graphics device that draws the window.
     window_context: Context,
     storage: Option<PathBuf>,
-    /// Where this window leaves what another needs to take its place.
+    /// State that this window hands over to its successor after a lost device.
     legacy: Legacy,
-    /// A volume that an earlier window had open, until the user has said how to go on.
+    /// Volume handed over from an earlier window, until the user has chosen how to go on.
     waiting: Option<Dataset>,
-    /// The device is gone, and nothing is drawn any more.
+    /// True once the device is lost; nothing is drawn any more.
     is_ending: bool,
-    /// The next window is to be drawn by the CPU.
+    /// True if the next window is to be drawn by the CPU (software adapter).
     wants_cpu: bool,
     canvas: Option<Canvas>,
     loader: Loader,
     memory: Memory,
     recent_pictures: RecentPictures,
-    /// Whether the next volume is shown as this one, and not as its own first look.
+    /// True if the next volume keeps the current look instead of getting its own first look.
     keeps_look: bool,
-    /// Settings of the volume that is being opened.
+    /// Look for the volume that is being opened, applied when the volume arrives.
     pending: Option<PendingLook>,
     balance: Option<Work<Result<f64, GpuError>>>,
     file_tasks: FileTasks,
@@ -132,11 +132,11 @@ pub struct App {
     files: Files,
     session: Option<Session>,
     recovery: Recovery,
-    /// What is opened when nothing is named waits until the user has said whether to reopen the last session.
+    /// True while the default volume waits for the user's answer about reopening the last session.
     first_waits: bool,
     quit: Quit,
     lost_again: LostAgain,
-    /// The session has not been laid over the first look yet.
+    /// True until the session's look has been applied over the first look.
     session_is_due: bool,
     adjust: Option<Adjustment>,
     history: History,
@@ -145,7 +145,7 @@ pub struct App {
     cut_handles: CutHandles,
     compare: Compare,
     overlay: Overlay,
-    /// What would be written over an exported picture.
+    /// Preview of the marks that would be drawn over an exported picture.
     export_marks: ExportMarks,
     orbit: Orbit,
     turning: Turning,
@@ -156,12 +156,12 @@ pub struct App {
     raw_dialog: RawDialog,
     roomy: Roomy,
     foreign_path: ForeignPath,
-    /// Whether what looks from outside say of their volumes is opened without a question.
+    /// True if volumes named by looks from outside are opened without asking the user.
     trusts_paths: bool,
     contact_sheet: ContactSheet,
     chooser: Chooser,
     give_up: GiveUp,
-    /// The next file is being looked for.
+    /// Search for the next file in the folder, while it runs.
     neighbour: Option<Neighbour>,
     editor: TransferEditor,
     selected_light: usize,
@@ -171,21 +171,21 @@ pub struct App {
     hints: Hints,
     ct_looks: CtLooks,
     messages: Messages,
-    /// The longest frame so far; see `status_file`.
+    /// Longest frame so far on the window's thread, in ms; written by `status_file`.
     longest_ui_ms: f64,
     status_file: StatusFile,
 }
 
-/// How long a window that closes waits for tasks that still use the graphics driver.
+/// Longest wait of a closing window for tasks that still use the graphics driver.
 const LAST_TASKS: Duration = Duration::from_secs(10);
 
 impl Drop for App {
     fn drop(&mut self) {
-        // Nobody waits for its end any more.
+        // The results of these tasks are no longer needed.
         self.light_search = None;
         self.contact_sheet.forget();
         self.strip.forget();
-        // Where another window takes the place of this one, that waits in the end.
+        // If another window replaces this one, that window waits for the tasks when it closes.
         if !self.is_ending {
             task::wait_for_all(LAST_TASKS);
         }
@@ -202,13 +202,13 @@ impl std::fmt::Debug for App {
 }
 
 impl App {
-    /// The look as it is now.
+    /// Returns the current settings, that is the look.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
 
-    /// Whether the full-quality picture of the current settings is on screen, nothing is being opened, the first look is
-    /// finished, and the balance is that of the settings, if it is kept.
+    /// Returns true if the full-quality picture of the current settings is on screen, nothing is being opened, the
+    /// first look is finished, and the balance, if it is kept, has been measured for these settings.
     pub fn is_idle(&self) -> bool {
         self.is_complete()
             && !self.is_making_look()
@@ -217,70 +217,71 @@ impl App {
             && !self.keep_balanced.is_due(&self.settings)
     }
 
-    /// Whether a look that was asked for is being made on another thread: for data of another kind, or of the object as
-    /// it is to stand.
+    /// Returns true while a requested look is computed on another thread: for another kind of data, or for the object
+    /// turned to stand another way up.
     pub fn is_making_look(&self) -> bool {
         self.treated.is_busy() || self.upright.is_busy()
     }
 
-    /// Whether the full-quality picture of the current settings is on screen and nothing is being opened, read or corrected.
+    /// Returns true if the full-quality picture of the current settings is on screen and nothing is being opened,
+    /// read or corrected.
     fn is_complete(&self) -> bool {
         self.has_its_volume() && self.viewport.is_idle(&self.compare.looks(&self.settings))
     }
 
-    /// Whether nothing is being opened, read or corrected.
+    /// Returns true if no volume is being opened, read or corrected.
     fn has_its_volume(&self) -> bool {
         self.loader.progress().is_none() && self.file_tasks.path().is_none() && !self.is_correcting()
     }
 
-    /// Where the picture is, in points, and its size in physical pixels.
+    /// Rectangle of the picture in points, and its size in physical pixels.
     pub fn viewport_rect(&self) -> Option<(egui::Rect, [u32; 2])> {
         self.canvas.map(|canvas| (canvas.rect, canvas.size))
     }
 
-    /// Where the handles of the lights that are on are, in points.
+    /// Positions of the handles of the enabled lights, in points.
     pub fn light_handle_positions(&self) -> &[egui::Pos2] {
         self.handles.positions()
     }
 
-    /// How often light volumes were filled for this volume.
+    /// Number of light volume refills since this volume was opened.
     pub fn light_rebuilds(&self) -> u64 {
         self.viewport.light_rebuilds()
     }
 
-    /// How often a preview of this volume was followed by its picture at full quality.
+    /// Number of previews of this volume that were followed by a full-quality picture.
     pub fn refinements(&self) -> u64 {
         self.viewport.refinements()
     }
 
-    /// Name of the open volume.
+    /// Name of the open volume, or `None` if there is none.
     pub fn volume_name(&self) -> Option<&str> {
         self.volume.as_ref().map(|volume| volume.name.as_str())
     }
 
-    /// What went wrong since the volume was opened.
+    /// Error messages since the volume was opened.
     pub fn errors(&self) -> &[String] {
         self.messages.errors()
     }
 
-    /// The latest note in the status bar since then, also when it has gone.
+    /// Latest note in the status bar since the volume was opened, even if it has disappeared.
     pub fn latest_note(&self) -> Option<&str> {
         self.messages.latest_note()
     }
 
-    /// Whether a note lies over the picture, which goes by itself after some seconds.
+    /// Returns true while a note lies over the picture; notes disappear after some seconds.
     pub fn shows_note(&self) -> bool {
         self.messages.shows_note()
     }
 
-    /// Exports the picture as the export window does.
+    /// Exports the picture as the export window does, replacing an existing file.
     pub fn export(&mut self, path: &Path, size: [u32; 2], ctx: &egui::Context) {
         self.export.set_size(size);
         self.export.agree_to(path);
         self.start_export(ctx);
     }
 
-    /// Whether a picture is being exported.
+    /// Returns true while an export is being rendered or written.
     pub fn is_exporting(&self) -> bool {
         self.export.is_busy()
     }
@@ -289,13 +290,13 @@ impl App {
 impl eframe::App for App {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
         self.fail_on_purpose();
-        // Before anything is drawn, which would panic.
+        // Checked before anything is drawn, because drawing on a lost device would panic.
         let is_lost = self.window_context.is_lost() || self.viewport.context().was_lost();
         if self.is_ending || is_lost {
             return self.end_for_another(ctx);
         }
         self.collect(ctx);
-        // Also when nothing is drawn.
+        // Runs even while the window is hidden and nothing is drawn.
         self.keep_look();
     }
 
@@ -360,7 +361,7 @@ impl eframe::App for App {
         };
         self.status_file.update(&state);
         if self.loader.progress().is_some() || self.export.is_busy() {
-            // The progress bar moves; and an export of an earlier window does not know this one.
+            // The progress bar moves; and an export started by an earlier window cannot wake this one.
             ctx.request_repaint_after(std::time::Duration::from_millis(100));
         }
     }

@@ -1,9 +1,11 @@
-//! What else the open file holds, for menus, panels and the window that shows it all.
+//! Alternatives of the open file for menus, panels and the chooser.
+//!
+//! They are its series, arrays, channels, time steps and components.
 
 use crate::app::text;
 use crate::data::load::{Aspect, Choice, Components, Held, Several, Whole};
 
-/// What there is to choose from in an aspect.
+/// Alternatives to choose from in one aspect of the open file.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Alternatives<'a> {
     held: &'a Held,
@@ -17,7 +19,7 @@ enum Of<'a> {
 }
 
 impl<'a> Alternatives<'a> {
-    /// Those of a file; none where it holds but one.
+    /// Returns the alternatives of a file in an aspect; `None` if the file holds only one.
     pub(crate) fn of(held: &'a Held, aspect: Aspect) -> Option<Self> {
         let of = match aspect {
             Aspect::Of(dimension) => Of::Several(held.of(dimension)?),
@@ -26,7 +28,7 @@ impl<'a> Alternatives<'a> {
         Some(Self { held, of })
     }
 
-    /// How many there are.
+    /// Number of alternatives in this aspect.
     pub(crate) fn count(&self) -> usize {
         match self.of {
             Of::Several(several) => several.offers.len(),
@@ -34,7 +36,7 @@ impl<'a> Alternatives<'a> {
         }
     }
 
-    /// Which of them is shown.
+    /// Index of the alternative that is shown.
     pub(crate) fn at(&self) -> usize {
         match self.of {
             Of::Several(several) => several.at,
@@ -44,13 +46,13 @@ impl<'a> Alternatives<'a> {
         }
     }
 
-    /// Name that the file gives one of them, if it does.
+    /// Name of an alternative in the file, if it has one.
     pub(crate) fn name_in_file(&self, at: usize) -> Option<&'a str> {
         let Of::Several(several) = self.of else { return None };
         several.offers.get(at).map(|offer| offer.name.as_str()).filter(|name| !name.is_empty())
     }
 
-    /// What one of them is called.
+    /// Name of an alternative for display.
     pub(crate) fn name(&self, at: usize) -> String {
         match self.of {
             Of::Several(several) => self
@@ -63,7 +65,7 @@ impl<'a> Alternatives<'a> {
         }
     }
 
-    /// Its voxels along x, y, z, where they are known.
+    /// Number of voxels of an alternative along x, y and z, where known.
     pub(crate) fn dims(&self, at: usize) -> Option<[u64; 3]> {
         match self.of {
             Of::Several(several) => several.offers.get(at).and_then(|offer| offer.dims),
@@ -71,7 +73,7 @@ impl<'a> Alternatives<'a> {
         }
     }
 
-    /// The voxels along x, y, z in the file, of which a part can be read.
+    /// Number of voxels of an alternative along x, y and z in the file, of which a part can be read.
     pub(crate) fn grid(&self, at: usize) -> Option<[usize; 3]> {
         match self.dims(at) {
             Some([x, y, z]) => {
@@ -81,7 +83,7 @@ impl<'a> Alternatives<'a> {
         }
     }
 
-    /// What opens it: it differs from what is shown in this alone.
+    /// Choice that opens an alternative; all other aspects stay as shown.
     pub(crate) fn choice(&self, at: usize) -> Choice {
         let shown = self.held.choice();
         match self.of {
@@ -95,13 +97,13 @@ impl<'a> Alternatives<'a> {
         }
     }
 
-    /// Whether colours are in the file that are not shown as such.
+    /// Returns true if the file has colours, which are shown as luminance.
     pub(crate) fn has_colors(&self) -> bool {
         matches!(self.of, Of::Components(Components { is_color: true, whole: Whole::Luminance, .. }))
     }
 }
 
-/// Where components begin in the list: after what all of them make, where they make something.
+/// Index of the first component in the list: after the scalar computed from all components, if there is one.
 fn first_component(components: Components) -> usize {
     usize::from(components.whole != Whole::First)
 }

@@ -1,4 +1,4 @@
-//! Tools: windows over the picture, or docked beside it, where nothing hides anything.
+//! Tool windows: floating over the picture, or docked beside it without hiding anything.
 
 use std::collections::BTreeSet;
 
@@ -11,33 +11,33 @@ use super::frame;
 use super::theme;
 use crate::app::text;
 
-/// Width of the dock in points, before somebody drags its border.
+/// Default width of the dock, in points, until the user drags its border.
 const WIDTH: f32 = 470.0;
-/// The narrowest dock, in which the narrowest tool is not cut.
+/// Minimum width of the dock, in points, at which the narrowest tool is not cut.
 const NARROWEST: f32 = 240.0;
-/// What the dock leaves of the picture.
+/// Width of the picture beside the widest dock, in points.
 const PICTURE: f32 = 240.0;
-/// Least width of the picture beside the narrowest dock: where less is left, tools float over the picture.
+/// Minimum width of the picture beside the narrowest dock, in points; below it, tools float over the picture.
 const LEAST_PICTURE: f32 = 160.0;
-/// Points of a docked tool's header.
+/// Height of a docked tool's header, in points.
 const HEADER: f32 = 26.0;
-/// Points of the title bar of a window, from its right border, where the toolkit has its own button.
+/// Width of the toolkit's close button at the right end of a title bar, in points.
 const CLOSE: f32 = 30.0;
 
-/// Which tools are docked, and where they lie.
+/// State of the dock: the titles of the docked tools, and their layout.
 #[derive(Debug, Clone, Default)]
 struct Dock {
     docked: BTreeSet<String>,
-    /// Docked tools that were shown in the frame before, in this order from the top.
+    /// Docked tools shown in the previous frame, in order from the top.
     before: Vec<&'static str>,
-    /// Those of this frame.
+    /// Docked tools shown so far in this frame, in order from the top.
     now: Vec<&'static str>,
     area: Option<Rect>,
-    /// There is nothing but the picture.
+    /// True while only the picture is shown.
     is_hidden: bool,
-    /// The window is too narrow for tools beside the picture: they float over it.
+    /// True if the window is too narrow for a dock: tools float over the picture.
     is_too_narrow: bool,
-    /// Points of width that the dock may have.
+    /// Maximum width of the dock, in points.
     room: f32,
 }
 
@@ -45,17 +45,17 @@ fn change<R>(ctx: &egui::Context, change: impl FnOnce(&mut Dock) -> R) -> R {
     ctx.data_mut(|data| change(data.get_temp_mut_or_default(Id::unique("dock"))))
 }
 
-/// Which tools are docked, by their titles.
+/// Returns the titles of the docked tools.
 pub(in crate::app) fn docked(ctx: &egui::Context) -> BTreeSet<String> {
     change(ctx, |dock| dock.docked.clone())
 }
 
-/// Docks tools, as they were left.
+/// Docks the tools that were docked in an earlier run.
 pub(in crate::app) fn set_docked(ctx: &egui::Context, titles: &BTreeSet<String>) {
     change(ctx, |dock| dock.docked.clone_from(titles));
 }
 
-/// Keeps room beside the picture, if a docked tool is open.
+/// Reserves space beside the picture, if a docked tool is open.
 pub(in crate::app) fn reserve(ui: &mut Ui) {
     let room = ui.available_width() - PICTURE;
     let is_too_narrow = ui.available_width() < NARROWEST + LEAST_PICTURE;
@@ -77,7 +77,7 @@ pub(in crate::app) fn reserve(ui: &mut Ui) {
     change(ui.ctx(), |dock| dock.area = Some(area.inner));
 }
 
-/// Hides the dock with all that is in it: there is nothing but the picture.
+/// Hides the dock with its tools, while only the picture is shown.
 pub(in crate::app) fn hide(ctx: &egui::Context) {
     change(ctx, |dock| {
         dock.now.clear();
@@ -85,14 +85,14 @@ pub(in crate::app) fn hide(ctx: &egui::Context) {
     });
 }
 
-/// A tool.
+/// Tool window, identified by its title.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::app) struct Tool {
-    /// What it is called, and known by.
+    /// Title of the tool, which also identifies it.
     pub title: &'static str,
-    /// Where its window is at first.
+    /// Initial position of the floating window, in points.
     pub default_pos: [f32; 2],
-    /// How wide its contents are at first.
+    /// Initial width of the floating window's contents, in points.
     pub default_width: f32,
 }
 
@@ -102,7 +102,7 @@ impl Tool {
         self.show_as(ctx, open, false, add);
     }
 
-    /// Shows a tool that asks something, while it is open: Escape closes it wherever the pointer is.
+    /// Shows a dialog while it is open: Escape closes it wherever the pointer is.
     pub(in crate::app) fn show_dialog(self, ctx: &egui::Context, open: &mut bool, add: impl FnOnce(&mut Ui)) {
         self.show_as(ctx, open, true, add);
     }
@@ -118,7 +118,7 @@ impl Tool {
         }
     }
 
-    /// Whether a tool that asks something floats over the picture, be it for want of room.
+    /// Returns true if a dialog floats over the picture, by choice or for lack of space.
     pub(in crate::app) fn is_floating_dialog(&self, ctx: &egui::Context) -> bool {
         !self.is_docked(ctx, true)
     }
@@ -127,7 +127,7 @@ impl Tool {
         self.has_room(ctx, is_dialog) && change(ctx, |dock| dock.docked.contains(self.title))
     }
 
-    /// Whether it can be docked. Rows of a dialog are not cut: its buttons would be out of sight.
+    /// Returns true if the tool can be docked. A dialog needs its full width: cut rows would hide its buttons.
     fn has_room(&self, ctx: &egui::Context, is_dialog: bool) -> bool {
         change(ctx, |dock| !dock.is_too_narrow && (!is_dialog || dock.room >= self.default_width))
     }
@@ -141,7 +141,7 @@ impl Tool {
         if !can_dock {
             return;
         }
-        // Beside the button that closes it.
+        // Beside the close button of the window.
         let whole = shown.response.rect;
         let middle = pos2(whole.right() - CLOSE - 12.0, whole.top() + 0.5 * HEADER + 2.0);
         let builder = UiBuilder::new().layer_id(shown.response.layer_id).max_rect(whole);
@@ -162,7 +162,7 @@ impl Tool {
             (dock.area, at, dock.before.len())
         });
         let Some((area, at)) = area.zip(at) else {
-            // Room is made in the next frame.
+            // The next frame reserves the space.
             return ctx.request_repaint();
         };
         let height = area.height() / count.max(1) as f32;
@@ -172,7 +172,7 @@ impl Tool {
         let builder = UiBuilder::new().layer_id(LayerId::background()).max_rect(place);
         let mut ui = Ui::new(ctx.clone(), Id::unique((self.title, "docked")), builder);
         ui.set_clip_rect(place);
-        // It lies below all windows, and belongs to the pointer that is over it.
+        // It lies below all windows; Escape closes the tool under the pointer.
         if (is_dialog || ui.rect_contains_pointer(place)) && frame::is_for_picture(ctx) {
             *open = false;
         }
@@ -196,7 +196,8 @@ impl Tool {
     }
 }
 
-/// A button with a window whose left part is filled, if it docks, or empty; whether it was clicked.
+/// Shows the icon of a window whose left part is filled (`docks`) or empty, as a button; returns true if it was
+/// clicked.
 fn sign(ui: &Ui, area: Rect, name: &str, docks: bool) -> bool {
     let response = ui.interact(area, ui.scope_id().with(("dock", docks)), Sense::click());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));

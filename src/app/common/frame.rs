@@ -1,33 +1,34 @@
-//! What windows and menus over the main window share: where they may lie, and how they are left.
+//! Placement, scrolling and closing of windows and menus over the main window.
 
 use eframe::egui::style::ScrollStyle;
 use eframe::egui::{self, InnerResponse, Key, Modifiers, Order, Popup, Rect, Response, ScrollArea, Ui};
 
-/// Height of the menu, which no window covers: whoever cannot reach it is stuck.
+/// Height of the menu bar in points. No window covers it: a user who cannot reach it is stuck.
 const MENU_HEIGHT: f32 = 26.0;
 
-/// Where windows may lie: below the menu, and within the main window.
+/// Area for windows: the main window below the menu bar.
 pub(in crate::app) fn room(ctx: &egui::Context) -> Rect {
     let mut room = ctx.content_rect();
     room.min.y += MENU_HEIGHT.min(room.height());
     room
 }
 
-/// Points above and below the rows of a menu, within its frame.
+/// Margin above and below the rows of a menu, within its frame, in points.
 const MENU_MARGIN: f32 = 10.0;
 
-/// A button that opens a menu, which scrolls where the window is too low for it: by wheel, by its bar, and to the row that
-/// the keyboard leads to.
+/// Shows a button that opens a menu, which scrolls if the window is too low for it: by wheel, by scroll bar, and to
+/// the row with the keyboard focus.
 pub(in crate::app) fn scrolling_menu<R>(
     ui: &mut Ui,
     title: &str,
     add: impl FnOnce(&mut Ui) -> R,
 ) -> InnerResponse<Option<R>> {
     ui.menu_button(title, |ui| {
-        // Nothing else says that there is more.
+        // Only a solid scroll bar shows that there is more.
         ui.spacing_mut().scroll = ScrollStyle::solid();
         let height = room(ui.ctx()).height() - 2.0 * MENU_MARGIN;
-        // As high as its rows, whatever the toolkit thinks that a window needs, and at most as the room; and as wide.
+        // As high as its rows, whatever minimum the toolkit assumes, and at most as high as the area; as wide as its
+        // rows.
         let scroll = ScrollArea::vertical().max_height(height).min_scrolled_height(height);
         let shown = scroll.show(ui, |ui| {
             ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
@@ -39,7 +40,7 @@ pub(in crate::app) fn scrolling_menu<R>(
     })
 }
 
-/// Scrolls to a widget among those that were just added that the keyboard has come to.
+/// Scrolls to a widget that was just added and has gained the keyboard focus.
 fn follow_focus(ui: &Ui) {
     let focused = ui.memory(egui::Memory::focused).and_then(|id| ui.ctx().read_response(id));
     if let Some(focused) = focused
@@ -50,10 +51,10 @@ fn follow_focus(ui: &Ui) {
     }
 }
 
-/// The tag of the probe, which lies below all windows and is none.
+/// Layer of the probe's tag, which lies below all windows and does not count as one.
 pub(in crate::app) const PROBE_TAG: &str = "tag";
 
-/// The highest window.
+/// Layer of the topmost window, if any is open.
 fn highest(ctx: &egui::Context) -> Option<egui::LayerId> {
     let tag = egui::Id::unique(PROBE_TAG);
     ctx.memory(|memory| {
@@ -64,7 +65,7 @@ fn highest(ctx: &egui::Context) -> Option<egui::LayerId> {
     })
 }
 
-/// Whether Escape is for the picture: no window is open, nothing is dragged, and nothing takes the key.
+/// Consumes Escape for the picture and returns true, if no window or popup is open and nothing is dragged.
 pub(in crate::app) fn is_for_picture(ctx: &egui::Context) -> bool {
     highest(ctx).is_none()
         && !Popup::is_any_open(ctx)
@@ -72,7 +73,8 @@ pub(in crate::app) fn is_for_picture(ctx: &egui::Context) -> bool {
         && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape))
 }
 
-/// Whether Escape closes a window that was just shown: it lies above all others, and nothing in it takes the key.
+/// Consumes Escape for a window that was just shown and returns true, if the window is topmost, no popup is open and
+/// nothing is dragged.
 pub(in crate::app) fn is_left(ctx: &egui::Context, shown: Option<&Response>) -> bool {
     let Some(shown) = shown else { return false };
     highest(ctx) == Some(shown.layer_id)

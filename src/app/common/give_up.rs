@@ -1,27 +1,27 @@
-//! Escape while the mouse drags something: what the hand has changed since the button went down is as it was.
+//! Cancelling of a drag by Escape: settings changed since the button went down are restored.
 
 use eframe::egui::{self, Key, Modifiers};
 
 use crate::model::Settings;
 
-/// What a drag can go back to.
+/// Settings to restore when a drag is cancelled.
 #[derive(Debug, Default)]
 pub(in crate::app) struct GiveUp {
-    /// The look when the button went down.
+    /// Settings of the look when the button went down.
     before: Option<Settings>,
-    /// In this frame.
+    /// True if Escape was pressed during a drag in this frame.
     is_asked: bool,
 }
 
 impl GiveUp {
-    /// Takes the key, before anything else sees it; the window library ends the drag by itself.
+    /// Consumes the key before anything else sees it; the toolkit ends the drag itself.
     pub(in crate::app) fn begin(&mut self, ctx: &egui::Context, settings: &Settings) {
         let (pressed, down, drags) = ctx.input(|input| {
             let pointer = &input.pointer;
             (pointer.any_pressed(), pointer.any_down(), pointer.is_decidedly_dragging())
         });
         if pressed {
-            // Another button during a drag begins no other one.
+            // Another button during a drag does not start a new one.
             self.before.get_or_insert_with(|| settings.clone());
         } else if !down {
             self.before = None;
@@ -30,7 +30,7 @@ impl GiveUp {
         self.is_asked = is_held && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
     }
 
-    /// Goes back, after all that the drag could change has been shown once more.
+    /// Restores the settings, after all widgets that the drag could change have been shown once more.
     pub(in crate::app) fn end(&mut self, settings: &mut Settings) {
         if std::mem::take(&mut self.is_asked)
             && let Some(before) = self.before.take()

@@ -1,4 +1,4 @@
-//! Lights by the keyboard: arrows turn the selected one, and what commands do to it.
+//! Keyboard control of lights: turning by the arrow keys, and the operations of the light commands.
 
 use eframe::egui::{self, Key, Modifiers};
 use glam::{DQuat, DVec3};
@@ -6,14 +6,14 @@ use glam::{DQuat, DVec3};
 use super::shortcuts::is_typing;
 use crate::model::{Camera, Light, Settings};
 
-/// Degrees per press of an arrow key.
+/// Angle per press of an arrow key, in degrees.
 const NUDGE_DEG: f64 = 1.0;
-/// Degrees per press of an arrow key with Shift.
+/// Angle per press of an arrow key with Shift, in degrees.
 const BIG_NUDGE_DEG: f64 = 10.0;
-/// Factor of the intensity per press.
+/// Factor of the intensity per step.
 const INTENSITY_STEP: f64 = 1.1;
 
-/// Turns the selected light by the arrow keys. Nothing else must want them: no widget has the focus.
+/// Turns the selected light by the arrow keys, unless a widget has the keyboard focus.
 pub(crate) fn nudge(ctx: &egui::Context, settings: &mut Settings, selected: usize) {
     if is_typing(ctx) || ctx.memory(egui::Memory::focused).is_some() {
         return;
@@ -35,7 +35,7 @@ pub(crate) fn nudge(ctx: &egui::Context, settings: &mut Settings, selected: usiz
     }
 }
 
-/// Turns a light about the middle of the volume, to the right and upwards as the eye sees it.
+/// Turns a light about the centre of the volume, to the right and upwards in view space.
 pub(crate) fn turn(light: &mut Light, camera: &Camera, right_deg: f64, up_deg: f64) {
     let view = camera.scene_from_view();
     let turn = DQuat::from_axis_angle(view.y_axis, right_deg.to_radians())
@@ -44,7 +44,7 @@ pub(crate) fn turn(light: &mut Light, camera: &Camera, right_deg: f64, up_deg: f
     light.set_scene_position(turn * world, camera);
 }
 
-/// Only this light shines; if it is so already, all do.
+/// Switches all lights off except one; if they are off already, switches all lights on.
 pub(crate) fn solo(lights: &mut [Light], selected: usize) {
     let alone = lights.iter().enumerate().all(|(at, light)| light.on == (at == selected));
     for (at, light) in lights.iter_mut().enumerate() {
@@ -52,13 +52,14 @@ pub(crate) fn solo(lights: &mut [Light], selected: usize) {
     }
 }
 
-/// A step brighter, or dimmer. From darkness it begins small.
+/// Multiplies the intensity by [`INTENSITY_STEP`] per step, up to 1000. Brightening a light of intensity 0 starts
+/// from 0.05.
 pub(crate) fn brighten(light: &mut Light, steps: i32) {
     let from = if light.intensity > 0.0 || steps < 0 { light.intensity } else { 0.05 };
     light.intensity = (from * INTENSITY_STEP.powi(steps)).min(1e3);
 }
 
-/// The light so many places further, around the end.
+/// Returns the index of the light `by` places further, wrapping around at both ends.
 pub(crate) fn cycle(count: usize, selected: usize, by: isize) -> usize {
     if count == 0 { 0 } else { (selected as isize + by).rem_euclid(count as isize) as usize }
 }

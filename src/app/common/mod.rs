@@ -1,4 +1,6 @@
-//! What all parts of the window share: commands and their keys, colours and sizes, keys for lights, facts of the open volume, long names.
+//! Shared parts of the window: commands, shortcuts, theme, docked tools, and facts about the open volume.
+//!
+//! Further: revealing of settings, keyboard control of lights, pacing of input, and elision of names.
 
 pub(super) mod aspect;
 pub(super) mod commands;

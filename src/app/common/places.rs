@@ -1,25 +1,25 @@
-//! What of the panels is found by a word, and by what else people call it.
+//! Searchable rows of the panels, with the synonyms by which the command palette finds them.
 
 use super::reveal::Place;
 use crate::app::text::{self, Named, sections};
 
-/// A row by its name alone.
+/// Makes the place of a row by its name alone.
 const fn called(section: &'static str, name: &'static str) -> Place {
     Place { section, row: Some(name), is_advanced: false }
 }
 
-/// A row that is not folded away.
+/// Makes the place of a row outside the advanced part of its section.
 const fn row(section: &'static str, named: Named) -> Place {
     called(section, named.name)
 }
 
-/// A row that is folded away.
+/// Makes the place of a row in the advanced part of its section.
 const fn advanced(section: &'static str, named: Named) -> Place {
     Place { section, row: Some(named.name), is_advanced: true }
 }
 
-/// Rows of the panels, each with what else it is found by. Of the facts about a volume, its spacing and its values are
-/// not among them: whoever seeks these is led to the corrections of that name.
+/// Searchable rows of the panels, each with its synonyms. Spacing and values among the facts about a volume are not
+/// listed: a search for these leads to the corrections of the same name.
 pub(crate) const PLACES: &[(Place, &str)] = &[
     (Place { section: text::labels::TITLE, row: None, is_advanced: false }, text::found::LABELS),
     (row(sections::LIGHTS, text::lights::NAME), text::found::NAME_OF_LIGHT),
@@ -30,7 +30,7 @@ pub(crate) const PLACES: &[(Place, &str)] = &[
     (row(sections::LIGHTS, text::lights::CONE), text::found::CONE),
     (row(sections::LIGHTS, text::lights::RIM), text::found::RIM),
     (row(sections::LIGHTS, text::lights::SHAPE), text::found::AREA_LIGHT),
-    // Of directional and of positional lights: two settings by one name.
+    // Width of directional and of positional lights: two settings of one name.
     (row(sections::LIGHTS, text::lights::ANGLE), text::found::WIDTH),
     (row(sections::LIGHTS, text::lights::ASPECT), text::found::ASPECT),
     (row(sections::LIGHTS, text::lights::TURN), text::found::TURN_OF_LIGHT),
@@ -73,7 +73,7 @@ pub(crate) const PLACES: &[(Place, &str)] = &[
     (row(sections::SOFT_LIGHT, text::sky::TURN), text::found::SKY_TURN),
     (advanced(sections::SOFT_LIGHT, text::sky::DENSITY), text::found::SKY_DENSITY),
     (advanced(sections::SOFT_LIGHT, text::sky::DIRECTIONS), text::found::DIRECTIONS),
-    // Of the sky and of bounces: both of them are shown.
+    // Resolution for the sky and for bounces: both rows are revealed.
     (advanced(sections::SOFT_LIGHT, text::shadows::RESOLUTION), text::found::MEMORY),
     (row(sections::SOFT_LIGHT, text::scattering::BOUNCES), text::found::SCATTERING),
     (row(sections::SOFT_LIGHT, text::scattering::ALBEDO), text::found::SCATTERING),
@@ -152,7 +152,7 @@ pub(crate) const PLACES: &[(Place, &str)] = &[
     (row(text::transfer::TITLE, text::transfer::LOG_HISTOGRAM), text::found::LOG_HISTOGRAM),
 ];
 
-/// What else a place is found by.
+/// Returns the synonyms of a place.
 pub(crate) fn words(place: Place) -> &'static str {
     PLACES.iter().find(|(known, _)| *known == place).map_or("", |(_, words)| words)
 }
@@ -161,7 +161,7 @@ pub(crate) fn words(place: Place) -> &'static str {
 mod tests {
     use super::*;
 
-    /// What the panels are made of.
+    /// Sources of the panels, which the tests scan for rows.
     const PANELS: [&str; 13] = [
         include_str!("../panels/camera.rs"),
         include_str!("../panels/compare.rs"),
@@ -178,7 +178,7 @@ mod tests {
         include_str!("../panels/sky.rs"),
     ];
 
-    /// What makes a row by the name that follows.
+    /// Calls that make a row with the name that follows.
     const MAKERS: [&str; 8] = [
         "row(ui,",
         "choice(ui,",
@@ -190,7 +190,7 @@ mod tests {
         "voxels(",
     ];
 
-    /// The names of rows in a source text.
+    /// Finds the names of rows in a source text.
     fn rows(source: &str) -> Vec<&str> {
         let name = |(at, _): (usize, &str)| {
             let is_made = MAKERS.iter().any(|maker| source[..at].trim_end().ends_with(maker));

@@ -1,21 +1,21 @@
-//! Presets that the settings are as if they had just been chosen, for lists that mark them.
+//! Detection of the presets that match the current settings, for lists that mark them.
 
 use eframe::egui::Ui;
 
 use crate::data::ValueRanges;
 use crate::model::{PRESETS, Preset, Settings};
 
-/// Cache of the presets in use: to find them, all are laid over the settings.
+/// Cache of the presets in use: finding them takes applying all presets to the settings.
 #[derive(Debug, Default)]
 pub(crate) struct PresetUse {
-    /// What they were found for.
+    /// Settings and ranges of values for which the presets were found.
     of: Option<(Settings, ValueRanges)>,
     found: Vec<Preset>,
 }
 
 impl PresetUse {
-    /// Finds the presets that settings for a volume with these values are made by, unless that is known. While something
-    /// is dragged, those stay that were found before.
+    /// Finds the presets that match settings for a volume with these ranges of values, unless they are cached. The
+    /// result stays as it is during a drag.
     pub(crate) fn look_at(&mut self, ui: &Ui, settings: &Settings, ranges: &ValueRanges) {
         let is_known = self.of.as_ref().is_some_and(|(known, of)| known == settings && of == ranges);
         if is_known || self.of.is_some() && ui.input(|input| input.pointer.any_down()) {
@@ -25,7 +25,7 @@ impl PresetUse {
         self.of = Some((settings.clone(), *ranges));
     }
 
-    /// Whether a preset is one of them.
+    /// Returns true if the preset is in use.
     pub(crate) fn has(&self, preset: &Preset) -> bool {
         self.found.contains(preset)
     }

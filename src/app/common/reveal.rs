@@ -1,4 +1,4 @@
-//! Showing where something is set: its section opens, and its row comes into sight and glows for a moment.
+//! Revealing of a setting: its section opens, the panel scrolls to its row, and the row glows for a moment.
 
 use std::collections::BTreeMap;
 
@@ -6,46 +6,46 @@ use eframe::egui::{self, Align, Id, Rect, Ui};
 
 use super::theme;
 
-/// Where something is set.
+/// Location of a setting in the panels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Place {
-    /// The title of its section.
+    /// Title of the setting's section.
     pub section: &'static str,
-    /// The name of its row; none for the section as a whole.
+    /// Name of the setting's row; `None` for the section as a whole.
     pub row: Option<&'static str>,
-    /// It is among what is folded away there.
+    /// True if the row is in the advanced part of its section, which is collapsed at first.
     pub is_advanced: bool,
 }
 
-/// Seconds that a row glows.
+/// Duration for which a revealed row glows, in seconds.
 const GLOW_S: f64 = 2.0;
-/// Passes after which what is scrolled to has come to rest, if it lay in the same place in all of them: one finds out
-/// where it goes, and the next moves it.
+/// Number of passes at the same position after which scrolling has finished: one finds the destination, and the next
+/// moves there.
 const PASSES_AT_REST: u8 = 3;
-/// Points by which something moves that has not come to rest.
+/// Movement between passes from which scrolling has not finished, in points.
 const MOVED: f32 = 0.5;
 
-/// What is being shown.
+/// Place that is being revealed, with its progress.
 #[derive(Debug, Clone, Copy)]
 struct Shown {
     place: Place,
     since_s: f64,
-    /// The passes in which its section, and what is folded away in it, were told to open.
+    /// Passes in which the section and its advanced part were told to open.
     opened: [Option<u64>; 2],
-    /// The last pass that has come to what is folded away in its section.
+    /// Last pass in which an advanced part of the section was shown.
     unfolded: Option<u64>,
-    /// The last pass in which its row was there.
+    /// Last pass in which the row was shown.
     seen: Option<u64>,
     way: Way,
 }
 
-/// The way to what is scrolled to. It is followed by passes and not by time: where frames are slow, few of them fit into
-/// the seconds in which a quick window arrives.
+/// Progress of scrolling to a place. It is counted in passes, not in time: where frames are slow, few of them fit
+/// into the seconds in which a fast window arrives.
 #[derive(Debug, Clone, Copy, Default)]
 struct Way {
-    /// Where it was in the pass before: its upper edge in points of the window.
+    /// Upper edge of the place in the previous pass, in points of the window.
     top: f32,
-    /// Passes in which it has not moved since.
+    /// Number of passes since without movement.
     at_rest: u8,
     has_begun: bool,
 }
@@ -57,8 +57,8 @@ impl Way {
         self.at_rest >= PASSES_AT_REST
     }
 
-    /// Scrolls on to an area. `may_rest`: what is around it does not move by itself. Whoever scrolls meanwhile is left
-    /// alone.
+    /// Continues scrolling to an area. `may_rest`: the layout around it is not animated. Scrolling by the user's
+    /// wheel ends it.
     fn follow(self, ui: &Ui, area: Rect, align: Align, may_rest: bool) -> Self {
         let is_wheel = |event: &egui::Event| matches!(event, egui::Event::MouseWheel { .. });
         let is_left = self.has_begun && ui.input(|input| input.events.iter().any(is_wheel));
@@ -80,7 +80,7 @@ fn now_s(ctx: &egui::Context) -> f64 {
     ctx.input(|input| input.time)
 }
 
-/// Begins to show a place.
+/// Starts to reveal a place.
 pub(crate) fn reveal(ctx: &egui::Context, place: Place) {
     let way = Way::default();
     let shown = Shown { place, since_s: now_s(ctx), opened: [None; 2], unfolded: None, seen: None, way };
@@ -93,8 +93,8 @@ fn shown(ctx: &egui::Context) -> Option<Shown> {
     (now_s(ctx) - shown.since_s < GLOW_S || !shown.way.is_over()).then_some(shown)
 }
 
-/// Whether a section, or what is folded away in it, is to open now. Says so during one pass: a section can have several
-/// parts that are folded away, and any of them may hold the row.
+/// Returns true if a section, or an advanced part of it, is to open now. It does so during one pass: a section can
+/// have several advanced parts, and any of them may hold the row.
 pub(in crate::app) fn opens(ctx: &egui::Context, section: &str, is_advanced: bool) -> bool {
     let Some(mut shown) = shown(ctx).filter(|shown| shown.place.section == section) else { return false };
     if is_advanced && !shown.place.is_advanced {
@@ -109,8 +109,8 @@ pub(in crate::app) fn opens(ctx: &egui::Context, section: &str, is_advanced: boo
     opened == pass
 }
 
-/// Scrolls to a section as a whole, its title at the top, if that is what is shown; also where the row that is sought in it
-/// is not there, since it belongs to something that is off. `is_open`: it has come to its full height. Whether it is being
+/// Scrolls to the title of a section, if the section as a whole is revealed, or if the row is not there because it
+/// belongs to a feature that is off. `is_open`: the section has its full height. Returns true while it is being
 /// scrolled to.
 pub(in crate::app) fn lead_to_section(ui: &Ui, section: &str, title: Rect, is_open: bool) -> bool {
     let ctx = ui.ctx();
@@ -125,7 +125,7 @@ pub(in crate::app) fn lead_to_section(ui: &Ui, section: &str, title: Rect, is_op
     true
 }
 
-/// Lets a row glow, if it is that which is shown.
+/// Scrolls to a row and lets it glow, while it is being revealed.
 pub(in crate::app) fn glow(ui: &Ui, section: &str, row: &str, area: Rect) {
     let ctx = ui.ctx();
     report(ctx, area, || format!("{section}/{row}"));
@@ -135,7 +135,7 @@ pub(in crate::app) fn glow(ui: &Ui, section: &str, row: &str, area: Rect) {
     }
     let pass = Some(ctx.cumulative_pass_nr());
     if shown.place.is_advanced && shown.unfolded != pass {
-        // Another row of that name, above what is folded away.
+        // Another row of that name, above the advanced part.
         return;
     }
     shown.seen = pass;
@@ -147,15 +147,15 @@ pub(in crate::app) fn glow(ui: &Ui, section: &str, row: &str, area: Rect) {
     ctx.request_repaint();
 }
 
-/// Opens a section and brings it into sight, if what it is about was switched on.
+/// Reveals a section if its feature was switched on.
 pub(crate) fn show_section(ctx: &egui::Context, section: &'static str, is_on: bool) {
     if is_on {
         reveal(ctx, Place { section, row: None, is_advanced: false });
     }
 }
 
-/// Places of the panel in one pass: areas in points of the window, by section, by section and row (`Data/Spacing`), and by
-/// what the names of buttons are.
+/// Areas of the panel's parts in one pass, in points of the window: by section, by section and row (`Data/Spacing`),
+/// and by the names of buttons.
 #[derive(Debug, Clone, Default)]
 struct Reported {
     pass: u64,
@@ -166,11 +166,11 @@ fn reported_id() -> Id {
     Id::unique("reported places")
 }
 
-/// Notes where something is, for whoever watches the window from outside.
+/// Records the area of a part of the panel, for the status file.
 pub(in crate::app) fn report(ctx: &egui::Context, area: Rect, name: impl FnOnce() -> String) {
     let pass = ctx.cumulative_pass_nr();
     ctx.data_mut(|data| {
-        // It is not there unless somebody watches.
+        // Absent unless the status file is in use.
         let Some(mut reported) = data.get_temp::<Reported>(reported_id()) else { return };
         if reported.pass != pass {
             reported = Reported { pass, ..Reported::default() };
@@ -180,7 +180,7 @@ pub(in crate::app) fn report(ctx: &egui::Context, area: Rect, name: impl FnOnce(
     });
 }
 
-/// Where things were in this pass, from the second time on.
+/// Returns the areas recorded in this pass; the first call returns none and starts the recording.
 pub(crate) fn reported(ctx: &egui::Context) -> BTreeMap<String, Rect> {
     let reported: Reported =
         ctx.data_mut(|data| data.get_temp_mut_or_default::<Reported>(reported_id()).clone());
@@ -194,7 +194,7 @@ mod tests {
     const SECTION: &str = "Data";
     const ROW: &str = "Spacing";
 
-    /// Begins to show a row that is folded away, and runs two passes.
+    /// Reveals a row in an advanced part, and runs two passes.
     fn run(mut pass: impl FnMut(&mut Ui)) {
         let ctx = egui::Context::default();
         reveal(&ctx, Place { section: SECTION, row: Some(ROW), is_advanced: true });

@@ -1,4 +1,4 @@
-//! The keys of commands.
+//! Keyboard shortcuts of commands, and their suspension while text is typed.
 
 use eframe::egui::gui_zoom::kb_shortcuts;
 use eframe::egui::{self, Event, Key, KeyboardShortcut, Modifiers};
@@ -15,9 +15,9 @@ const fn control(key: Key, command: Command) -> (KeyboardShortcut, Command) {
     (KeyboardShortcut::new(Modifiers::COMMAND, key), command)
 }
 
-/// A command with its key, as help shows it.
+/// Shortcuts with their commands, in the order in which help shows them.
 pub(crate) const SHORTCUTS: [(KeyboardShortcut, Command); 48] = [
-    // The longer one first: egui lets Shift pass where it is not asked for.
+    // Shortcuts with Shift come first: egui lets Shift pass where it is not required.
     (KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::O), Command::OpenFolder),
     control(Key::O, Command::OpenDialog),
     control(Key::L, Command::OpenPath),
@@ -72,12 +72,12 @@ const DIGITS: [Key; 9] =
     [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
 
 impl Command {
-    /// The command's key, for menus.
+    /// Returns the command's shortcut for menus, or an empty text.
     pub(crate) fn shortcut_text(&self, ctx: &egui::Context) -> String {
         match self {
             Self::StoreView(slot) => return text::commands::store_view_keys(*slot),
             Self::RecallView(slot) => return text::commands::recall_view_keys(*slot),
-            // The toolkit listens to them by itself.
+            // The toolkit handles these shortcuts itself.
             Self::Scale(1) => return ctx.format_shortcut(&kb_shortcuts::ZOOM_IN),
             Self::Scale(-1) => return ctx.format_shortcut(&kb_shortcuts::ZOOM_OUT),
             Self::Scale(_) => return ctx.format_shortcut(&kb_shortcuts::ZOOM_RESET),
@@ -88,7 +88,7 @@ impl Command {
     }
 }
 
-/// A key as it is printed on the keyboard.
+/// Formats a shortcut as its key is printed on the keyboard.
 pub(crate) fn key_text(ctx: &egui::Context, shortcut: KeyboardShortcut) -> String {
     let named = ctx.format_shortcut(&shortcut);
     let signs: [_; 6] = [
@@ -102,8 +102,8 @@ pub(crate) fn key_text(ctx: &egui::Context, shortcut: KeyboardShortcut) -> Strin
     signs.into_iter().fold(named, |text, (key, sign)| text.replace(key.name(), sign))
 }
 
-/// Adds the commands whose keys were pressed. Letters are left to text fields while one is edited, in the frame after
-/// that, and while a window is open in which text is typed.
+/// Adds the commands whose shortcuts were pressed. Letters go to text fields while one is edited, in the frame after
+/// that, and while a window for text input is open.
 pub(crate) fn from_keys(ctx: &egui::Context, commands: &mut Vec<Command>) {
     if is_typing(ctx) {
         reserve_letters(ctx);
@@ -118,35 +118,36 @@ pub(crate) fn from_keys(ctx: &egui::Context, commands: &mut Vec<Command>) {
     }
 }
 
-/// Whether a key is F1, F2 and so on, which are in no text.
+/// Returns true for F1, F2 and so on, which type no text.
 pub(crate) fn is_function_key(key: Key) -> bool {
     key.name().strip_prefix('F').is_some_and(|number| number.parse::<u8>().is_ok())
 }
 
-/// Where the last pass is kept in which letters were for text alone.
+/// Identifier under which the last pass is stored in which letters were reserved for text.
 fn reserved_id() -> egui::Id {
     egui::Id::unique("letters are for text")
 }
 
-/// Keeps letters and digits from being commands, in this frame and the next. Windows in which text is typed call it while
-/// they are open: whoever misses their field with a click has not asked for twenty commands.
+/// Reserves letters and digits for text, in this frame and the next. Windows for text input call it while they are
+/// open, so that text typed beside their field does not execute twenty commands.
 pub(crate) fn reserve_letters(ctx: &egui::Context) {
     let pass = ctx.cumulative_pass_nr();
     ctx.data_mut(|data| data.insert_temp(reserved_id(), pass));
 }
 
-/// Whether letters and digits are for a text, and no commands.
+/// Returns true if letters and digits are reserved for text.
 pub(crate) fn are_letters_reserved(ctx: &egui::Context) -> bool {
     let last: Option<u64> = ctx.data(|data| data.get_temp(reserved_id()));
     last.is_some_and(|last| ctx.cumulative_pass_nr() <= last + 1)
 }
 
-/// Whether letters go into a text field.
+/// Returns true if typed letters go into a text field.
 pub(crate) fn is_typing(ctx: &egui::Context) -> bool {
     ctx.egui_wants_keyboard_input() && ctx.memory(egui::Memory::focused).is_some_and(|id| is_text(ctx, id))
 }
 
-/// Digits with Control, and Shift. By the place of the key: with Shift its sign is another on every keyboard.
+/// Returns the commands of the digits pressed with Control, or with Control and Shift. Digits are identified by the
+/// physical key: with Shift, each keyboard layout has other characters.
 fn view_slots(ctx: &egui::Context) -> Vec<Command> {
     let slot = |event: &Event| {
         let Event::Key { key, physical_key, pressed: true, modifiers, .. } = event else { return None };
@@ -160,7 +161,7 @@ fn view_slots(ctx: &egui::Context) -> Vec<Command> {
     ctx.input(|input| input.events.iter().filter_map(slot).collect())
 }
 
-/// Whether a widget is a text field that is being edited.
+/// Returns true if a widget is a text field that is being edited.
 fn is_text(ctx: &egui::Context, id: egui::Id) -> bool {
     egui::TextEdit::load_state(ctx, id).is_some()
 }
@@ -184,7 +185,8 @@ mod tests {
         assert_eq!(names.len(), count);
     }
 
-    /// The commands of a frame in which G was struck, and whether the letters of that frame are reserved.
+    /// Returns the commands of a frame in which G was pressed; `reserves`: the letters of that frame are reserved for
+    /// text.
     fn commands_of_g(ctx: &egui::Context, reserves: bool) -> Vec<Command> {
         let key = Event::Key {
             key: Key::G,

@@ -1,4 +1,4 @@
-//! Views and looks that are kept: a strip of small pictures below the picture, and what is done with them.
+//! Kept views and looks: the strip of thumbnails below the picture, and the commands on its items.
 
 mod strip;
 mod thumbnails;
@@ -11,21 +11,21 @@ use super::common::commands::Command;
 use crate::app::text;
 use crate::model::{Camera, Kept, KeptLook, KeptThing, ObjectTurn, Settings, Variant};
 
-/// The first name of its kind that is free.
+/// Returns the first numbered name that no kept item has.
 fn free_name(settings: &Settings, name: impl Fn(usize) -> String) -> String {
     let is_taken = |wanted: &str| settings.kept.iter().any(|kept| kept.name == wanted);
-    // One of so many names is free of so many that are kept.
+    // Of n + 1 names, at least one is not among n kept items.
     (1..=settings.kept.len() + 1).map(name).find(|name| !is_taken(name)).unwrap_or_default()
 }
 
 impl App {
-    /// Keeps the view that is shown.
+    /// Keeps the current view (camera) under a new name.
     pub(in crate::app) fn keep_view(&mut self) {
         let name = free_name(&self.settings, text::kept::view_name);
         self.keep_in_strip(Kept::view(name, &self.settings.camera));
     }
 
-    /// Keeps the look that is shown.
+    /// Keeps the current look (all settings) under a new name.
     pub(in crate::app) fn keep_look_in_strip(&mut self) {
         let name = free_name(&self.settings, text::kept::look_name);
         self.keep_in_strip(Kept::look(name, &self.settings));
@@ -37,10 +37,10 @@ impl App {
         self.has_kept(has_room, note);
     }
 
-    /// Keeps the view that is shown under a digit.
+    /// Keeps the current view under a digit key.
     pub(in crate::app) fn keep_view_under(&mut self, digit: u8) {
         let name = free_name(&self.settings, |number| {
-            // By its digit, if that is free.
+            // Named after its digit, if that name is free.
             text::kept::view_name(if number == 1 { digit.into() } else { number })
         });
         let has_room = self.settings.keep_view_under(digit, name);
@@ -56,7 +56,7 @@ impl App {
         }
     }
 
-    /// Goes to what is kept under a digit.
+    /// Goes to the item kept under a digit, or notes that there is none.
     pub(in crate::app) fn go_to_digit(&mut self, digit: u8, ctx: &egui::Context) {
         match self.settings.kept.iter().position(|kept| kept.digit == Some(digit)) {
             Some(at) => self.go_to_kept(at, false, ctx),
@@ -64,7 +64,7 @@ impl App {
         }
     }
 
-    /// Goes to something that is kept; to a look also with its view, if that is wanted.
+    /// Applies a kept item: a view moves the camera; a look changes the settings, and also the camera if `with_view`.
     pub(in crate::app) fn go_to_kept(&mut self, at: usize, with_view: bool, ctx: &egui::Context) {
         let Some(kept) = self.settings.kept.get(at).cloned() else { return };
         if let Some(look) = kept.as_look() {
@@ -76,7 +76,7 @@ impl App {
         }
     }
 
-    /// Looks from a view that was kept. Where the object stands otherwise in it, the room turns first.
+    /// Moves the camera to a kept view. If the object stands another way up in it, the room is turned first.
     fn look_as(&mut self, camera: &Camera, command: Command, ctx: &egui::Context) {
         if camera.up != self.settings.camera.up {
             if !self.first_look_stands_on(camera.up, Some(command), ctx) {
@@ -88,7 +88,7 @@ impl App {
         self.settings.camera.clone_from(camera);
     }
 
-    /// Keeps what is shown in the place of something that is kept.
+    /// Replaces a kept item by the current view or look, keeping its name.
     pub(in crate::app) fn replace_kept(&mut self, at: usize) {
         let Some(kept) = self.settings.kept.get(at) else { return };
         let what = match kept.what {
@@ -100,7 +100,8 @@ impl App {
         }
     }
 
-    /// Shows two views or looks to either side of a divider: two that are kept, or the picture and one.
+    /// Compares two views or looks on either side of a divider: two kept ones, or the current picture (`None`) and a
+    /// kept one.
     pub(in crate::app) fn compare_kept(&mut self, left: Option<usize>, right: usize) {
         let variant = |at: usize| {
             self.settings.kept.get(at).map(|kept| match kept.as_look() {
@@ -120,7 +121,7 @@ impl App {
         }
     }
 
-    /// The strip, if it is shown.
+    /// Shows the strip of kept items, if it is visible and a volume is open.
     pub(in crate::app) fn kept_strip(&mut self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         self.draw_kept(ui.ctx());
         if self.layout.kept && self.volume.is_some() {
@@ -128,7 +129,7 @@ impl App {
         }
     }
 
-    /// Small pictures of what is kept are made while nothing else is done.
+    /// Renders missing thumbnails of kept items while nothing else is being computed.
     fn draw_kept(&mut self, ctx: &egui::Context) {
         self.strip.thumbnails.take(ctx);
         if !self.layout.kept {

@@ -1,4 +1,5 @@
-//! The strip of small pictures: one click goes to a view or look, a drag moves it, the right button has the rest.
+//! Strip of thumbnails of kept views and looks: a click goes to an item, a drag moves it, and the context menu has
+//! the rest.
 
 use eframe::egui::{
     self, Align, Align2, FontId, Key, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2,
@@ -11,22 +12,22 @@ use crate::app::common::{shortcuts, theme};
 use crate::app::text::{self, Named};
 use crate::model::{DIGITS, Kept, MAX_NAME, Settings};
 
-/// Points of a small picture's height.
+/// Height of a thumbnail, in points.
 const HEIGHT: f32 = 72.0;
-/// Points below it, for its name.
+/// Height of the name below a thumbnail, in points.
 const NAME: f32 = 18.0;
 
-/// State of the strip.
+/// State of the strip between frames.
 #[derive(Debug, Default)]
 pub(in crate::app) struct Strip {
     pub(super) thumbnails: Thumbnails,
-    /// What is dragged.
+    /// Index of the item that is being dragged.
     dragged: Option<usize>,
-    /// What is marked, at most two, the latest last.
+    /// Indices of the items marked for comparison, at most two, the latest last.
     marked: Vec<usize>,
 }
 
-/// What happened to an item.
+/// Action of the user on an item.
 enum Act {
     Go,
     Mark,
@@ -39,14 +40,14 @@ fn button(ui: &mut Ui, Named { name, tip }: Named) -> bool {
 }
 
 impl Strip {
-    /// Forgets pictures, and whoever makes them: another volume is shown, or nothing more.
+    /// Forgets all thumbnails, and stops the thread that renders them: another volume is shown, or the window closes.
     pub(in crate::app) fn forget(&mut self) {
         *self = Self::default();
     }
 
     /// Shows the strip below the picture.
     pub(super) fn show(&mut self, ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Command>) {
-        // What is kept may have changed meanwhile, by a step back, say.
+        // The list may have changed since the last frame, for example by undo.
         self.dragged = self.dragged.filter(|&at| at < settings.kept.len());
         let panel = egui::Panel::bottom("kept").resizable(false).frame(theme::panel(ui));
         panel.exact_size(HEIGHT + NAME + 22.0).show(ui, |ui| {
@@ -142,7 +143,7 @@ impl Strip {
         }
     }
 
-    /// One picture with its name.
+    /// Shows one item: its thumbnail, digit, swatch and name.
     fn item(&self, ui: &mut Ui, at: usize, kept: &Kept) -> Response {
         let size = size_for(HEIGHT);
         let (whole, response) = ui.allocate_exact_size(size + vec2(0.0, NAME), Sense::click_and_drag());
@@ -155,7 +156,7 @@ impl Strip {
             let all = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             painter.image(texture.id(), picture, all, egui::Color32::WHITE);
         }
-        // A look is more than a view: it has a swatch of its colours.
+        // A look has a swatch of its colours; a view has none.
         if let Some(look) = kept.as_look() {
             let dots = look.transfer.points.iter().rev().take(3).map(|point| point.color);
             for (number, color) in (0..).zip(dots) {
@@ -188,7 +189,7 @@ impl Strip {
         response.on_hover_text(text::kept::tip(&kept.name, is_look, kept.digit))
     }
 
-    /// Marks something, or takes the mark away; the second one is compared with the first.
+    /// Marks or unmarks an item; when two are marked, they are compared.
     fn mark(&mut self, at: usize, commands: &mut Vec<Command>) {
         if let Some(known) = self.marked.iter().position(|&marked| marked == at) {
             self.marked.remove(known);
@@ -204,7 +205,7 @@ impl Strip {
     }
 }
 
-/// What the right button offers.
+/// Shows the context menu of an item, and returns the action that was chosen.
 fn menu(ui: &mut Ui, at: usize, settings: &mut Settings, commands: &mut Vec<Command>) -> Option<Act> {
     shortcuts::reserve_letters(ui.ctx());
     let mut act = None;
@@ -258,7 +259,7 @@ fn menu(ui: &mut Ui, at: usize, settings: &mut Settings, commands: &mut Vec<Comm
     act
 }
 
-/// Between which items the pointer is, as the number of those before it; none where there is no pointer.
+/// Gap between items at the pointer, as the number of items before it; `None` without a pointer.
 fn gap_at(ui: &Ui, places: &[Rect]) -> Option<usize> {
     let x = ui.input(|input| input.pointer.interact_pos())?.x;
     Some(places.iter().filter(|rect| rect.center().x < x).count())

@@ -1,4 +1,4 @@
-//! Small pictures of what is kept, made on a thread of their own, one after the other.
+//! Thumbnails of kept views and looks, rendered one after another on a background thread.
 
 use std::sync::mpsc;
 
@@ -9,15 +9,15 @@ use crate::app::windows::export::{Subject, Worker, shown_of};
 use crate::app::worker::task::Work;
 use crate::model::{Kept, KeptThing, Settings};
 
-/// A picture of something that is kept.
+/// Finished thumbnail of a kept item.
 struct Drawn {
-    /// What it shows, and of which volume.
+    /// Item that is shown, and content id of the volume.
     of: (KeptThing, u64),
-    /// None where it could not be made.
+    /// Texture on the GPU; `None` if rendering failed.
     texture: Option<TextureHandle>,
 }
 
-/// Pictures that are on their way.
+/// Batch of thumbnails in progress on a background thread.
 struct Drawing {
     work: Work<()>,
     drawn: mpsc::Receiver<(KeptThing, Option<ColorImage>)>,
@@ -25,7 +25,7 @@ struct Drawing {
     content_id: u64,
 }
 
-/// The pictures that there are.
+/// Finished thumbnails of the current volume, and the batch in progress.
 #[derive(Default)]
 pub(super) struct Thumbnails {
     drawn: Vec<Drawn>,
@@ -40,30 +40,31 @@ impl std::fmt::Debug for Thumbnails {
 }
 
 impl Thumbnails {
-    /// The picture of something that is kept, if it is there.
+    /// Returns the thumbnail of a kept item, if it has been rendered.
     pub(super) fn get(&self, kept: &Kept) -> Option<&TextureHandle> {
         let is_of = |drawn: &&Drawn| Some(drawn.of.1) == self.content_id && drawn.of.0 == kept.what;
         self.drawn.iter().find(is_of)?.texture.as_ref()
     }
 
-    /// Whether pictures are being made.
+    /// Returns true while thumbnails are being rendered.
     pub(super) fn is_busy(&self) -> bool {
         self.drawing.is_some()
     }
 
-    /// What there are no pictures of yet; none while some are made.
+    /// Items that have no thumbnail yet; `None` if there are none, or while a batch is in progress.
     pub(super) fn wanted(&mut self, settings: &Settings, content_id: Option<u64>) -> Option<Vec<KeptThing>> {
         self.content_id = content_id;
         let id = content_id.filter(|_| self.drawing.is_none())?;
         let kept = || settings.kept.iter().map(|kept| &kept.what);
-        // What is gone, and what is of another volume, is drawn again if it comes back.
+        // Items that were removed or belong to another volume are dropped; should they return, they are rendered
+        // again.
         self.drawn.retain(|drawn| drawn.of.1 == id && kept().any(|what| *what == drawn.of.0));
         let is_missing = |what: &&KeptThing| self.drawn.iter().all(|drawn| drawn.of.0 != **what);
         let missing: Vec<_> = kept().filter(is_missing).cloned().collect();
         (!missing.is_empty()).then_some(missing)
     }
 
-    /// Starts to make pictures. Views are drawn in the look that is shown now.
+    /// Starts to render thumbnails. Views are drawn in the current look.
     pub(super) fn start(
         &mut self,
         wanted: Vec<KeptThing>,
@@ -95,17 +96,18 @@ impl Thumbnails {
         Ok(())
     }
 
-    /// Takes in pictures that were made.
+    /// Collects the thumbnails that have been rendered since the last call.
     pub(super) fn take(&mut self, ctx: &egui::Context) {
         let Some(drawing) = &self.drawing else { return };
-        // Asked before what was handed on is taken: nothing comes after the end.
+        // Queried before the channel is drained: no thumbnail is sent after the end of the task.
         let is_over = drawing.work.take().is_some();
         for (what, picture) in drawing.drawn.try_iter() {
             let texture = picture.map(|picture| ctx.load_texture("kept", picture, TextureOptions::LINEAR));
             self.drawn.push(Drawn { of: (what, drawing.content_id), texture });
         }
         if let Some(Drawing { wanted, content_id, .. }) = self.drawing.take_if(|_| is_over) {
-            // What was not made, because the thread has come to a bad end, is not tried again and again.
+            // Items that are missing because the thread panicked are marked as failed, so that they are not tried
+            // again and again.
             for what in wanted {
                 if self.drawn.iter().all(|drawn| drawn.of.0 != what) {
                     self.drawn.push(Drawn { of: (what, content_id), texture: None });
@@ -115,7 +117,7 @@ impl Thumbnails {
     }
 }
 
-/// Width and height of a picture on screen, for a height in points.
+/// Size of a thumbnail on screen, for a height in points.
 pub(super) fn size_for(height: f32) -> egui::Vec2 {
     egui::vec2(height * SMALL[0] as f32 / SMALL[1] as f32, height)
 }

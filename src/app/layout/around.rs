@@ -1,4 +1,4 @@
-//! The panels around the picture.
+//! Panels around the picture: menu bar, status bar, transfer function editor, side panel and strip of kept views.
 
 use eframe::egui;
 
@@ -10,7 +10,7 @@ use crate::app::viewport::Facts;
 use crate::app::{App, panels, text};
 
 impl App {
-    /// The panels around the picture.
+    /// Shows the panels around the picture; while only the picture is shown, just the help windows.
     pub(in crate::app) fn around(&mut self, ui: &mut egui::Ui, facts: &Facts, commands: &mut Vec<Command>) {
         self.layout.theme = ui.ctx().options(|options| options.theme_preference);
         self.help.ui(ui.ctx(), facts, self.settings.camera.up);
@@ -56,7 +56,7 @@ impl App {
         let status = status::Status { facts, busy, making: self.making(), went };
         status::show(ui, status, &mut self.messages, commands);
         if let Some(volume) = &self.volume {
-            // A table has a height of its own.
+            // The label table has a default height of its own.
             let (name, height) = if volume.is_shown_by_label(&self.settings) {
                 ("labels", theme::LABEL_TABLE_HEIGHT)
             } else {
@@ -95,14 +95,14 @@ impl App {
         self.layout.slice_convention = self.slices.convention;
     }
 
-    /// What the menu bar says of the open volume.
+    /// Title in the menu bar: name, dimensions and spacing of the open volume.
     fn title(&self) -> Option<menu::Title> {
         let volume = self.volume.as_ref()?;
         let facts = text::menu::facts(volume.dims, volume.spacing_mm, volume.has_unknown_scale);
         Some(menu::Title { name: volume.name.clone(), facts })
     }
 
-    /// What the window makes beside pictures, and the user waits for.
+    /// Task beside the pictures that the user waits for, in words; the first that is running.
     fn making(&self) -> Option<&'static str> {
         [
             (self.is_correcting(), text::status::CORRECTING),

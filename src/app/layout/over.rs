@@ -1,4 +1,4 @@
-//! The windows over the picture.
+//! Windows over the picture: dialogs, tool windows and their answers.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use crate::app::windows::{export, light_slice, recovery, roomy};
 use crate::app::{App, text};
 
 impl App {
-    /// The windows over the picture.
+    /// Shows the windows over the picture, and acts on the answers that they return.
     pub(in crate::app) fn windows(
         &mut self,
         frame: &eframe::Frame,

@@ -1,4 +1,6 @@
-//! How files were corrected, in all windows of this user: they are opened so again.
+//! List of corrected files, shared by all windows of this user.
+//!
+//! A file is opened again with its last corrections.
 
 use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
@@ -9,10 +11,10 @@ use super::kept_list;
 use super::recent::{path_of, text_of};
 use crate::data::Corrections;
 
-/// Files that are remembered: some hundred bytes each, and more than anybody corrects in a year.
+/// Maximum number of remembered files: some hundred bytes each, and more than a user corrects in a year.
 pub(super) const MOST: usize = 500;
 
-/// What can be seen of a file without reading it.
+/// Size and modification time of a file, which are known without reading it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub(crate) struct FileStamp {
     bytes: Option<u64>,
@@ -20,7 +22,7 @@ pub(crate) struct FileStamp {
 }
 
 impl FileStamp {
-    /// That of a file as it is now.
+    /// Returns the stamp of a file as it is now.
     pub(crate) fn of(file: &Path) -> Self {
         let Ok(facts) = std::fs::metadata(file) else { return Self::default() };
         let modified = facts.modified().ok().and_then(|time| time.duration_since(UNIX_EPOCH).ok());
@@ -28,13 +30,13 @@ impl FileStamp {
         Self { bytes: Some(facts.len()), modified_ns }
     }
 
-    /// Whether both are known, and those of the same file.
+    /// Returns true if both stamps are complete and equal.
     fn is_same(self, other: Self) -> bool {
         self.bytes.is_some() && self.modified_ns.is_some() && self == other
     }
 }
 
-/// A file, and how it was corrected last.
+/// File with its last corrections.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Remembered {
     file: PathBuf,
@@ -44,23 +46,23 @@ pub(crate) struct Remembered {
 }
 
 impl Remembered {
-    /// What was corrected of a file, with its path from the root.
+    /// Creates an entry for a file, given by its absolute path.
     pub(super) fn new(file: PathBuf, stamp: FileStamp, opened_id: u64, by: Corrections) -> Self {
         Self { file, stamp, opened_id, by }
     }
 
-    /// The corrections, for a volume that was opened: if its file was not touched, or holds the same volume all the same.
+    /// Returns the corrections for an opened volume, if its file is unmodified or holds the same volume nevertheless.
     pub(crate) fn of(&self, stamp: FileStamp, opened_id: u64) -> Option<Corrections> {
         (self.stamp.is_same(stamp) || self.opened_id == opened_id).then_some(self.by)
     }
 
-    /// Of which file it is.
+    /// Returns true if the entry is of this file.
     pub(super) fn is_at(&self, file: &Path) -> bool {
         self.file == file
     }
 }
 
-/// How it is written.
+/// Entry of the list as JSON.
 #[derive(Debug, Serialize, Deserialize)]
 struct Written {
     file: String,
@@ -82,13 +84,13 @@ impl From<Written> for Remembered {
     fn from(written: Written) -> Self {
         let Written { file, stamp, content_id, corrections: mut by } = written;
         by.sanitise();
-        // No file has the identity of one that cannot be read.
+        // An invalid identifier becomes 0, which is that of no volume.
         let opened_id = u64::from_str_radix(&content_id, 16).unwrap_or_default();
         Self { file: path_of(&file), stamp, opened_id, by }
     }
 }
 
-/// The list of a folder, the latest first; with a notice if it was damaged and has been put aside.
+/// Reads the list from a folder, the latest first; returns a notice if it was corrupt and was quarantined.
 pub(super) fn read(folder: &Path) -> (Vec<Remembered>, Option<String>) {
     let (list, notice) = kept_list::read::<Written>(&path(folder));
     (list.into_iter().take(MOST).map(Remembered::from).collect(), notice)
@@ -98,7 +100,7 @@ fn path(folder: &Path) -> PathBuf {
     folder.join("corrected.json")
 }
 
-/// A list with what was chosen last at its head; without it, if that is what the file says.
+/// Puts the latest corrections of a file at the head of a list; removes the file if it has none.
 pub(super) fn put_first(list: &mut Vec<Remembered>, latest: Remembered) {
     list.retain(|known| known.file != latest.file);
     if !latest.by.is_none() {
@@ -107,7 +109,7 @@ pub(super) fn put_first(list: &mut Vec<Remembered>, latest: Remembered) {
     list.truncate(MOST);
 }
 
-/// Adds to the list of a folder, the latest last. What another window has added stays.
+/// Adds entries to the list in a folder, the latest last. Entries of other windows stay.
 pub(super) fn add(folder: &Path, chosen: Vec<Remembered>) -> Result<(), String> {
     kept_list::change::<Written>(&path(folder), |list| {
         let mut list: Vec<_> = list.into_iter().map(Remembered::from).collect();

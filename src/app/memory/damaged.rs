@@ -1,4 +1,4 @@
-//! Files of ours that cannot be used: they are put aside, and never in the way of a start.
+//! Quarantine of corrupt state files, so that they cannot block a start.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -7,7 +7,7 @@ use crate::app::text;
 use crate::data::read_small;
 use crate::export;
 
-/// Gives a file another name, with the time, so that somebody can look at it. Says what was done.
+/// Quarantines a file by renaming it, with the time in its name, so that it can be examined. Returns a notice.
 pub(super) fn put_aside(path: &Path) -> String {
     match export::put_aside(path) {
         Ok(aside) => text::memory::put_aside(path, &aside),
@@ -15,8 +15,8 @@ pub(super) fn put_aside(path: &Path) -> String {
     }
 }
 
-/// Puts aside what the window toolkit could not read of a folder, or would wait for without end. It is read before
-/// anything of ours runs, and only says where windows and panels were.
+/// Quarantines the toolkit's window state in a folder if it is unreadable, or would block the reader indefinitely. The
+/// toolkit reads it before any code of this program runs; it only holds the positions of windows and panels.
 pub(crate) fn check_window_state(folder: &Path) -> Option<String> {
     let path = folder.join("app.ron");
     if super::starts_have_failed(folder) && path.exists() {

@@ -1,4 +1,6 @@
-//! The looks of earlier runs: a file for each, with a small picture; and a lock for as long as the run lasts.
+//! Looks of earlier runs for crash recovery.
+//!
+//! Each run has a session file and a thumbnail, and a lock file while it lasts.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -12,39 +14,39 @@ use crate::data::read_small;
 use crate::export;
 use crate::model::Record;
 
-/// Looks of earlier runs that are kept.
+/// Maximum number of earlier looks that are kept.
 pub(crate) const MOST: usize = 10;
 
-/// Names that are looked at in the folder: a hundred runs at once, each with three files.
+/// Maximum number of directory entries that are read: a hundred simultaneous runs with three files each.
 const MOST_NAMES: usize = 300;
 
-/// The last look of an earlier run.
+/// Last look of an earlier run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct EarlierRun {
-    /// A session file.
+    /// Path of the session file.
     pub look: PathBuf,
-    /// What it is of: a path or the name of a built-in volume.
+    /// Path of the volume's file, or name of a built-in volume.
     pub source: String,
-    /// When it was kept.
+    /// Time of the last autosave.
     pub when: SystemTime,
-    /// The run ended without having been told to: it crashed, or was killed.
+    /// True if the run crashed or was killed.
     pub crashed: bool,
 }
 
 impl EarlierRun {
-    /// What the look shows, if that was kept.
+    /// Reads the thumbnail of the look, if there is one.
     pub(crate) fn picture(&self) -> Option<ColorImage> {
         thumbnail::read(&self.look.with_extension("png"))
     }
 
-    /// The user has been told that the run crashed.
+    /// Marks the crash as acknowledged by the user.
     pub(super) fn settle(&mut self) {
         end(&self.look);
         self.crashed = false;
     }
 }
 
-/// The run of a look has ended as it should, or nobody needs to know otherwise.
+/// Marks the run of a look as ended normally, by removing its lock file.
 pub(super) fn end(look: &Path) {
     export::remove(&lock_of(look));
 }
@@ -53,28 +55,28 @@ fn lock_of(look: &Path) -> PathBuf {
     look.with_extension("lock")
 }
 
-/// Runs of this process, which may have several windows.
+/// Counter of the runs in this process, which may have several windows.
 static RUNS: AtomicU32 = AtomicU32::new(0);
 
-/// The files of a run that goes on.
+/// Files of the current run.
 #[derive(Debug)]
 pub(super) struct ThisRun {
-    /// Where its look is kept.
+    /// Path of the autosaved look.
     pub look: PathBuf,
-    /// Held until the process ends, however it does.
+    /// Lock that is held until the process ends, normally or not.
     lock: Option<File>,
 }
 
 impl ThisRun {
-    /// Begins a run in a folder.
+    /// Starts a run in a folder, with a lock file.
     pub(super) fn begin(folder: &Path) -> std::io::Result<Self> {
         export::make_folder(folder)?;
         let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-        // Names in the order of time, and of no other process.
+        // Names sort by time, and are unique among processes.
         let number = RUNS.fetch_add(1, Ordering::Relaxed);
         let name = format!("{:013}-{}-{number}.json", now.as_millis(), std::process::id());
         let look = folder.join(name);
-        // On a file system without locks, a run that goes on looks as if it had crashed.
+        // On a file system without locks, a running window looks like a crashed one.
         let lock = export::hold_lock(&lock_of(&look))?;
         Ok(Self { look, lock: Some(lock) })
     }
@@ -82,9 +84,9 @@ impl ThisRun {
 
 impl Drop for ThisRun {
     fn drop(&mut self) {
-        // Some systems do not remove what is open.
+        // Some systems do not remove open files.
         self.lock = None;
-        // A run that panics is one that was cut off.
+        // A run that panics counts as crashed.
         if std::thread::panicking() {
             return;
         }
@@ -92,7 +94,7 @@ impl Drop for ThisRun {
     }
 }
 
-/// Whether the run of a look goes on; and if not, whether it was cut off.
+/// State of the run of a look: running, ended normally, or crashed.
 enum Ended {
     NotYet,
     AsItShould,
@@ -109,7 +111,7 @@ fn how_ended(look: &Path) -> Ended {
     }
 }
 
-/// Takes over the look of a version that kept one for all runs.
+/// Takes over the look of an older version, which kept a single one for all runs.
 pub(super) fn adopt(folder: &Path, runs: &Path) {
     for name in ["before.json", "now.json"] {
         let look = folder.join(name);
@@ -120,12 +122,12 @@ pub(super) fn adopt(folder: &Path, runs: &Path) {
     }
 }
 
-/// How often the program was cut off before it had a look, since it had one.
+/// Counts the crashed runs without a look, since the last run with a look.
 pub(super) fn failed_starts(folder: &Path) -> usize {
     failed(&files_of(folder)).0.len()
 }
 
-/// The files of a folder, in the order of their names.
+/// Lists the files of a folder, sorted by name.
 fn files_of(folder: &Path) -> Vec<PathBuf> {
     let names = std::fs::read_dir(folder).into_iter().flatten().take(MOST_NAMES);
     let mut files: Vec<PathBuf> = names.filter_map(|entry| Some(entry.ok()?.path())).collect();
@@ -133,7 +135,8 @@ fn files_of(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// The locks of runs that were cut off before they had a look: after the latest run that had one, and before.
+/// Finds the locks of runs that crashed before they had a look: those after the latest run with a look, and those
+/// before.
 fn failed(files: &[PathBuf]) -> (Vec<&PathBuf>, Vec<&PathBuf>) {
     let has_ending = |file: &&PathBuf, wanted: &str| file.extension().is_some_and(|ending| ending == wanted);
     let latest = files.iter().rfind(|file| has_ending(file, "json"));
@@ -145,11 +148,11 @@ fn failed(files: &[PathBuf]) -> (Vec<&PathBuf>, Vec<&PathBuf>) {
     cut_off.partition(|lock| latest.is_none_or(|latest| *lock > latest))
 }
 
-/// The runs of a folder that have ended, the latest first, with notices of what was damaged. More than [`MOST`] are
-/// not kept.
+/// Reads the runs of a folder that have ended, the latest first, with notices of corrupt files. Removes all but
+/// [`MOST`].
 pub(super) fn read(folder: &Path) -> (Vec<EarlierRun>, Vec<String>) {
     let files = files_of(folder);
-    // Starts that failed matter until one has not.
+    // Failed starts matter until one has succeeded.
     let (_, over) = failed(&files);
     for lock in over {
         export::remove(lock);
@@ -176,7 +179,7 @@ pub(super) fn read(folder: &Path) -> (Vec<EarlierRun>, Vec<String>) {
     (runs, notices)
 }
 
-/// What the list says of a look; none if it is none.
+/// Reads the description of a look for the list; `None` if the file is invalid.
 fn describe(look: &Path, crashed: bool) -> Option<EarlierRun> {
     let text = String::from_utf8(read_small(look).ok()?).ok()?;
     let record = Record::read(&text).ok()?;
@@ -184,7 +187,7 @@ fn describe(look: &Path, crashed: bool) -> Option<EarlierRun> {
     Some(EarlierRun { look: look.to_owned(), source: record.volume?.source, when, crashed })
 }
 
-/// Removes a look, and what belongs to it.
+/// Removes a look with its thumbnail and lock file.
 fn remove(look: &Path) {
     for file in [look.to_owned(), look.with_extension("png"), lock_of(look)] {
         export::remove(&file);

@@ -1,4 +1,6 @@
-//! Keeps the look of this run on the disk while it changes, on a thread of its own: also when no frame is drawn.
+//! Autosave of the current look and of the lists of files, on a thread of its own.
+//!
+//! It works even when no frame is drawn.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, TryLockError, Weak};
@@ -17,15 +19,15 @@ use crate::data::load::Choice;
 use crate::export::write_atomically;
 use crate::model::{Record, Settings, VolumeRecord};
 
-/// How long changes are collected before they are written: what is lost at most, with the time for writing, and half
-/// of the two seconds that users are promised.
+/// Time for which changes are collected before they are written: together with the time for writing, the maximum
+/// loss, and half of the two seconds that users are promised.
 const COLLECT: Duration = Duration::from_secs(1);
 
-/// How long a process that ends in a hurry waits for a write under way: three quarters of the two seconds that users are
-/// promised, since it has a look of its own to write then.
+/// Time for which a terminating process waits for a write in progress: three quarters of the two seconds that users
+/// are promised, since it has a look of its own to write then.
 const LAST_WAIT: Duration = Duration::from_millis(1500);
 
-/// A look, and what it is of.
+/// Look with the volume that it belongs to.
 #[derive(Debug, Clone)]
 struct Look {
     settings: Settings,
@@ -41,23 +43,23 @@ impl Look {
     }
 }
 
-/// What a look shows, and of which file.
+/// Picture of a look, with the file that it shows.
 #[derive(Debug)]
 struct Shown {
     picture: Arc<ColorImage>,
     source: PathBuf,
 }
 
-/// What waits to be written.
+/// Changes that wait to be written.
 #[derive(Debug, Default)]
 struct Due {
     look: Option<Look>,
     picture: Option<Shown>,
     /// Files that were opened, the latest last.
     opened: Vec<RecentFile>,
-    /// How things stand that were turned, the latest last.
+    /// Up axes that the user has chosen for folders, the latest last.
     stood: Vec<Standing>,
-    /// How files are corrected that were, the latest last.
+    /// Corrections that the user has chosen for files, the latest last.
     corrected: Vec<Remembered>,
     closed: bool,
 }
@@ -69,18 +71,18 @@ impl Due {
     }
 }
 
-/// What the window and the thread share.
+/// State shared by the window and the autosave thread.
 #[derive(Debug)]
 struct Shared {
     due: Mutex<Due>,
     changed: Condvar,
-    /// Held while files are written, so that what is older never comes last.
+    /// Held during a write, so that an older state is never written last.
     writing: Mutex<()>,
-    /// Why the last write failed; none if it did not.
+    /// Reason why the last write of the look failed, if it did.
     failure: Mutex<Option<String>>,
-    /// The folder of what is remembered.
+    /// Storage folder of the program.
     folder: PathBuf,
-    /// The file of this run's look; its picture lies beside it.
+    /// Path of this run's look; its thumbnail lies beside it.
     look: PathBuf,
     wake: egui::Context,
 }
@@ -89,7 +91,7 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The lock, unless it is held for longer than a process that ends can wait.
+/// Locks a mutex, unless that takes longer than a terminating process can wait.
 fn locked_soon<T>(mutex: &Mutex<T>) -> Option<MutexGuard<'_, T>> {
     let begin = Instant::now();
     loop {
@@ -103,8 +105,8 @@ fn locked_soon<T>(mutex: &Mutex<T>) -> Option<MutexGuard<'_, T>> {
 }
 
 impl Shared {
-    /// Writes what is due. A look that could not be written is due again, unless there is a newer one; all else that could
-    /// not is let go.
+    /// Writes pending changes. A look that could not be written stays pending, unless there is a newer one; other
+    /// changes that fail are dropped.
     fn write(&self, due: Due) {
         let Due { look, picture, opened, stood, corrected, closed: _ } = due;
         if let Some(look) = look {
@@ -119,7 +121,7 @@ impl Shared {
                 self.wake.request_repaint();
             }
         }
-        // The look counts; a list is one without its picture, too, and without the latest file.
+        // The look matters most; the lists do without thumbnails and the latest file.
         if let Some(Shown { picture, source }) = picture {
             let kept = thumbnail::write(&picture, &self.look.with_extension("png"));
             if let Err(err) = kept.and_then(|()| recent_pictures::write(&self.folder, &source, &picture)) {
@@ -169,28 +171,28 @@ impl Shared {
     }
 }
 
-/// Keeps the look of this run. Dropping this waits until all is written.
+/// Autosave of this run. Dropping it waits until everything is written.
 #[derive(Debug)]
 pub(super) struct Keeper {
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
 }
 
-/// Writes what a keeper has not written yet, at once: for a process that is told to end, or that panics.
+/// Handle that writes pending changes at once, for a process that is terminated or panics.
 #[derive(Debug, Clone)]
 pub(crate) struct LastWords(Weak<Shared>);
 
-/// Those of all windows of this process.
+/// Handles of all windows of this process.
 static LAST_WORDS: Mutex<Vec<LastWords>> = Mutex::new(Vec::new());
 
-/// Writes what no window of this process has written yet.
+/// Writes the pending changes of all windows of this process.
 pub(crate) fn write_last_words() {
     let all = locked_soon(&LAST_WORDS).map(|all| all.clone());
     all.into_iter().flatten().for_each(|words| words.write());
 }
 
-/// Writes what no window of this process has written yet, because the process has been told to end: what it leaves was
-/// not cut off.
+/// Writes the pending changes of all windows of a process that was told to terminate, and marks their runs as ended
+/// normally.
 #[cfg(feature = "cli")]
 pub(crate) fn end_in_a_hurry() {
     write_last_words();
@@ -202,7 +204,7 @@ pub(crate) fn end_in_a_hurry() {
 }
 
 impl LastWords {
-    /// Writes, unless a thread that has stopped holds what is needed.
+    /// Writes pending changes, unless a stopped thread holds a lock.
     pub(crate) fn write(&self) {
         let Some(shared) = self.0.upgrade() else { return };
         let Some(_writing) = locked_soon(&shared.writing) else { return };
@@ -212,7 +214,7 @@ impl LastWords {
 }
 
 impl Keeper {
-    /// Keeps looks in a file, and files that were opened in a folder.
+    /// Starts the autosave to a file of the look, and to the lists in a folder.
     pub(super) fn new(folder: &Path, look: &Path, wake: &egui::Context) -> std::io::Result<Self> {
         let shared = Arc::new(Shared {
             due: Mutex::default(),
@@ -240,40 +242,40 @@ impl Keeper {
         self.shared.changed.notify_one();
     }
 
-    /// The look as it is from now on.
+    /// Schedules the current look for writing.
     pub(super) fn keep(&self, settings: &Settings, source: &Path, content_id: u64, choice: &Choice) {
         let (settings, source, choice) = (settings.clone(), source.to_owned(), choice.clone());
         let look = Look { settings, source, content_id, choice };
         self.change(|due| due.look = Some(look));
     }
 
-    /// What the look shows.
+    /// Schedules a picture of the look for writing, as a thumbnail.
     pub(super) fn show(&self, picture: Arc<ColorImage>, source: &Path) {
         let source = source.to_owned();
         self.change(|due| due.picture = Some(Shown { picture, source }));
     }
 
-    /// A file was opened.
+    /// Schedules an opened file for the list of recent files.
     pub(super) fn opened(&self, file: RecentFile) {
         self.change(|due| due.opened.push(file));
     }
 
-    /// The object was turned.
+    /// Schedules the up axis of a folder.
     pub(super) fn stood(&self, standing: Standing) {
         self.change(|due| due.stood.push(standing));
     }
 
-    /// A file was corrected.
+    /// Schedules the corrections of a file.
     pub(super) fn corrected(&self, remembered: Remembered) {
         self.change(|due| due.corrected.push(remembered));
     }
 
-    /// Why the look could not be kept; none if it was.
+    /// Returns the reason why the look could not be written, if the last write failed.
     pub(super) fn failure(&self) -> Option<String> {
         locked(&self.shared.failure).clone()
     }
 
-    /// What a process does before it ends in a hurry.
+    /// Returns a handle that writes pending changes before the process terminates.
     pub(super) fn last_words(&self) -> LastWords {
         LastWords(Arc::downgrade(&self.shared))
     }
@@ -282,7 +284,7 @@ impl Keeper {
 impl Drop for Keeper {
     fn drop(&mut self) {
         self.change(|due| due.closed = true);
-        // That it panicked is logged where it did.
+        // A panic of the thread was logged there.
         self.thread.take().map(JoinHandle::join);
     }
 }

@@ -1,4 +1,4 @@
-//! Lists that all windows of this user share, in files of their own, the latest entry first.
+//! JSON lists that all windows of this user share, one file each, the latest entry first.
 
 use std::io::ErrorKind;
 use std::path::Path;
@@ -10,10 +10,10 @@ use super::damaged;
 use crate::data::read_small;
 use crate::export::{hold_lock, write_atomically};
 
-/// The list of a file; with a notice if it was damaged and has been put aside.
+/// Reads the list in a file; returns a notice if it was corrupt and was quarantined.
 pub(super) fn read<T: DeserializeOwned>(path: &Path) -> (Vec<T>, Option<String>) {
     let found = match read_small(path) {
-        // Also where the folder is none: that is said when the run begins.
+        // A folder that is none is reported when the run begins.
         Err(err) if matches!(err.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
             return (Vec::new(), None);
         }
@@ -25,12 +25,12 @@ pub(super) fn read<T: DeserializeOwned>(path: &Path) -> (Vec<T>, Option<String>)
     }
 }
 
-/// Changes the list of a file, while no other window does.
+/// Changes the list in a file, while a lock keeps other windows from changing it.
 pub(super) fn change<T: DeserializeOwned + Serialize>(
     path: &Path,
     change: impl FnOnce(Vec<T>) -> Vec<T>,
 ) -> Result<(), String> {
-    // Without locks, two windows must be quick to lose an entry.
+    // Without locks, two windows lose an entry only if they write at nearly the same time.
     let _lock = hold_lock(&path.with_extension("lock")).map_err(|err| err.to_string())?;
     let (list, _) = read(path);
     let text = serde_json::to_string_pretty(&change(list)).map_err(|err| err.to_string())?;

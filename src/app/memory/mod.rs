@@ -1,6 +1,6 @@
-//! What is remembered from one run to the next: files that were opened, and the looks of this run and the last ones.
+//! State that outlives a run: recent files, up axes, corrections, and autosaved looks for crash recovery.
 //!
-//! Each run has files of its own, so that two windows never take anything from each other.
+//! Each run has files of its own, so that two windows never overwrite each other's looks.
 
 mod corrected;
 mod damaged;
@@ -34,10 +34,10 @@ use crate::data::load::Choice;
 use crate::export;
 use crate::model::{SceneAxis, Settings};
 
-/// Starts in succession that have to fail before one leaves out what may be to blame.
+/// Number of successive failed starts after which the next one is a safe start.
 const FAILED_STARTS: usize = 3;
 
-/// Whether the last starts of the program have failed, one after the other, of those that remember in a folder.
+/// Returns true if the last starts of the program with this storage folder have failed in succession.
 pub(crate) fn starts_have_failed(folder: &Path) -> bool {
     earlier::failed_starts(&folder.join("runs")) >= FAILED_STARTS
 }
@@ -46,17 +46,17 @@ fn is_builtin(source: &Path) -> bool {
     source.to_str().is_some_and(|name| name.starts_with("builtin:"))
 }
 
-/// The path of a file from the root; built-in volumes have none.
+/// Absolute path of a file; `None` for built-in volumes.
 fn whole_path(source: &Path) -> Option<PathBuf> {
     (!is_builtin(source)).then(|| std::path::absolute(source).ok()).flatten()
 }
 
-/// The folder of a file from the root; built-in volumes have none.
+/// Absolute path of a file's folder; `None` for built-in volumes.
 fn folder_of(source: &Path) -> Option<PathBuf> {
     whole_path(source).and_then(|file| file.parent().map(Path::to_owned))
 }
 
-/// The look that was handed over last, and what it is of.
+/// Look that was scheduled last, with its volume.
 #[derive(Debug)]
 struct Kept {
     settings: Settings,
@@ -65,34 +65,33 @@ struct Kept {
     choice: Choice,
 }
 
-/// Files in the folder that the system gives us; without one, nothing is remembered.
+/// State in the storage folder of the program; without a folder, nothing is remembered.
 #[derive(Debug, Default)]
 pub(crate) struct Memory {
     recent: Vec<RecentFile>,
-    /// Which way up things stood in folders, the latest first.
+    /// Up axes of folders, the latest first.
     standing: Vec<Standing>,
-    /// How files were corrected, the latest first.
+    /// Corrections of files, the latest first.
     corrected: Vec<Remembered>,
     /// Runs that have ended, the latest first.
     earlier: Vec<EarlierRun>,
-    /// There was no run before.
+    /// True if there was no earlier run.
     is_first: bool,
-    /// The last starts have failed, one after the other.
+    /// True if the last starts have failed in succession.
     is_troubled: bool,
-    /// What the user should know, once.
+    /// Notices that are still to be shown to the user.
     notices: Vec<String>,
     kept: Option<Kept>,
-    /// The last write has failed, and that has been said.
+    /// True while writes fail, which was reported.
     is_failing: bool,
     folder: Option<PathBuf>,
-    // In this order: all is written before the run ends.
+    // Drop order: everything is written before the run ends.
     keeper: Option<Keeper>,
     run: Option<ThisRun>,
 }
 
 impl Memory {
-    /// Remembers what was written to a folder, and keeps the look of this run there. Wakes the window when something
-    /// could not be kept.
+    /// Reads the state in a folder and starts the autosave there. `wake` is repainted when a write fails.
     pub(crate) fn new(folder: Option<&Path>, wake: &egui::Context) -> Self {
         let mut memory = Self::default();
         let Some(folder) = folder else { return memory };
@@ -126,27 +125,27 @@ impl Memory {
         memory
     }
 
-    /// Whether nobody has used the program here before.
+    /// Returns true if the program has never been used with this storage folder.
     pub(crate) fn is_first(&self) -> bool {
         self.is_first
     }
 
-    /// Whether the last starts have failed: the next one leaves out what may be to blame.
+    /// Returns true if the last starts have failed, so that this one has to be a safe start.
     pub(crate) fn is_troubled(&self) -> bool {
         self.is_troubled
     }
 
-    /// What was opened, the latest first.
+    /// Recently opened files, the latest first.
     pub(crate) fn recent(&self) -> &[RecentFile] {
         &self.recent
     }
 
-    /// Their pictures.
+    /// Creates the cache of the recent files' thumbnails.
     pub(crate) fn recent_pictures(&self) -> RecentPictures {
         self.folder.as_deref().map_or_else(RecentPictures::default, RecentPictures::of)
     }
 
-    /// Takes note of a file that was opened, and of which of its volumes. Built-in volumes have a menu of their own.
+    /// Adds a file and the choice of its volume to the recent files. Built-in volumes have a menu of their own.
     pub(crate) fn opened(&mut self, source: &Path, choice: &Choice) {
         if is_builtin(source) {
             return;
@@ -159,14 +158,14 @@ impl Memory {
         }
     }
 
-    /// Which way up a file is to stand that is opened from where others were.
+    /// Returns the up axis for a file: the last one that the user has chosen in its folder.
     pub(crate) fn up_of(&self, source: &Path) -> SceneAxis {
         let folder = folder_of(source);
         let known = folder.and_then(|folder| self.standing.iter().find(|known| known.folder == folder));
         known.map_or_else(SceneAxis::default, |known| known.up)
     }
 
-    /// Takes note of which way up the user has stood a file. Built-in volumes are in no folder.
+    /// Remembers the up axis for the folder of a file. Built-in volumes have no folder.
     pub(crate) fn stood(&mut self, source: &Path, up: SceneAxis) {
         let Some(folder) = folder_of(source) else { return };
         let latest = Standing { folder, up };
@@ -176,13 +175,13 @@ impl Memory {
         }
     }
 
-    /// How a file was corrected when it was open last, if it was.
+    /// Returns the last corrections of a file, if it has any.
     pub(crate) fn corrections_of(&self, source: &Path) -> Option<Remembered> {
         let whole = whole_path(source)?;
         self.corrected.iter().find(|known| known.is_at(&whole)).cloned()
     }
 
-    /// Takes note of how the user has corrected a file. Built-in volumes are what they are.
+    /// Remembers the corrections of a file. Built-in volumes are not remembered.
     pub(crate) fn corrected(&mut self, source: &Path, stamp: FileStamp, opened_id: u64, by: Corrections) {
         let Some(file) = whole_path(source) else { return };
         let latest = Remembered::new(file, stamp, opened_id, by);
@@ -197,22 +196,22 @@ impl Memory {
         &self.earlier
     }
 
-    /// Whether a record is the look of an earlier run: it may open what the user had open then.
+    /// Returns true if a record is the look of an earlier run, which may open the volume that was open then.
     pub(crate) fn is_own(&self, record: &Path) -> bool {
         self.earlier.iter().any(|run| run.look == record)
     }
 
-    /// The look of the run before, if there is one.
+    /// Path of the look of the previous run, if there is one.
     pub(crate) fn before(&self) -> Option<PathBuf> {
         self.earlier.first().map(|run| run.look.clone())
     }
 
-    /// The user has been told of the runs that crashed: they are among the earlier ones, and not offered again.
+    /// Marks crashed runs as acknowledged: their looks stay in the list, and are not offered again.
     pub(crate) fn settle(&mut self) {
         self.earlier.iter_mut().filter(|run| run.crashed).for_each(EarlierRun::settle);
     }
 
-    /// Keeps a look of a volume, unless it is as it was.
+    /// Autosaves the look of a volume, unless it is unchanged.
     pub(crate) fn keep(&mut self, settings: &Settings, source: &Path, content_id: u64, choice: &Choice) {
         let is_known = self.kept.as_ref().is_some_and(|kept| {
             kept.content_id == content_id && kept.choice == *choice && kept.settings == *settings
@@ -224,19 +223,19 @@ impl Memory {
         }
     }
 
-    /// Keeps what the look shows.
+    /// Autosaves a picture of the look as its thumbnail.
     pub(crate) fn show(&self, picture: Arc<ColorImage>) {
         if let Some((keeper, kept)) = self.keeper.as_ref().zip(self.kept.as_ref()) {
             keeper.show(picture, &kept.source);
         }
     }
 
-    /// Something that the user should know, and that was found before there was a window.
+    /// Adds a notice for the user from before there was a window.
     pub(crate) fn add_notice(&mut self, notice: String) {
         self.notices.push(notice);
     }
 
-    /// What the user should know, once.
+    /// Takes the notices that the user has not seen yet.
     pub(crate) fn take_notices(&mut self) -> Vec<String> {
         let failure = self.keeper.as_ref().and_then(Keeper::failure);
         let was_failing = std::mem::replace(&mut self.is_failing, failure.is_some());
@@ -244,7 +243,7 @@ impl Memory {
         std::mem::take(&mut self.notices)
     }
 
-    /// What a process does before it ends in a hurry.
+    /// Returns a handle that writes pending changes before the process terminates.
     pub(crate) fn last_words(&self) -> Option<LastWords> {
         self.keeper.as_ref().map(Keeper::last_words)
     }

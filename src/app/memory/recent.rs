@@ -1,4 +1,4 @@
-//! Files that were opened, in all windows of this user.
+//! List of recent files, shared by all windows of this user.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -11,20 +11,20 @@ use crate::data::read_small;
 use crate::export::{hold_lock, write_atomically};
 use crate::model::{decode_path, encode_path};
 
-/// What names that are no text begin with in the file, all bytes of which are written after it. No other entry does:
-/// they are paths from the root.
+/// Prefix of paths that are not valid text, all bytes of which are encoded after it. Other entries are absolute
+/// paths, which never begin with it.
 const IN_BYTES: &str = "file://";
 
-/// A file that was opened, and which of its volumes was, where it holds several.
+/// File that was opened, and the volume chosen in it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct RecentFile {
-    /// Where it is.
+    /// Absolute path of the file.
     pub path: PathBuf,
-    /// What was opened of it last.
+    /// Choice among the volumes of the file.
     pub choice: Choice,
 }
 
-/// What of a file of several volumes was opened, as it is written: beside the list, which earlier versions read too.
+/// Choice of a volume as JSON: in a file beside the list, since earlier versions read the list, too.
 #[derive(Debug, Serialize, Deserialize)]
 struct Chosen {
     file: String,
@@ -37,17 +37,17 @@ impl Chosen {
     }
 }
 
-/// The file of what was opened of files that hold several volumes.
+/// File with the choices of files that hold several volumes.
 const CHOSEN: &str = "chosen.json";
 
-/// Files that the menu offers.
+/// Maximum number of recent files in the menu.
 pub(super) const MOST: usize = 12;
 
-/// The list of a folder, the latest first; with a notice if it was damaged and has been put aside.
+/// Reads the list from a folder, the latest first; returns a notice if it was corrupt and was quarantined.
 pub(super) fn read(folder: &Path) -> (Vec<RecentFile>, Option<String>) {
     let path = folder.join("recent.json");
     let found = match read_small(&path) {
-        // Also where the folder is none: that is said when the run begins.
+        // A folder that is none is reported when the run begins.
         Err(err) if matches!(err.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
             return (Vec::new(), None);
         }
@@ -56,7 +56,7 @@ pub(super) fn read(folder: &Path) -> (Vec<RecentFile>, Option<String>) {
     match found.and_then(|bytes| serde_json::from_slice::<Vec<String>>(&bytes).ok()) {
         Some(list) => {
             let chosen = read_small(&folder.join(CHOSEN)).ok();
-            // Without it, the first volume of each is opened.
+            // Without it, the first volume of each file is opened.
             let chosen = chosen.and_then(|bytes| serde_json::from_slice::<Vec<Chosen>>(&bytes).ok());
             let chosen = chosen.unwrap_or_default();
             let choice_of = |text: &String| {
@@ -70,7 +70,7 @@ pub(super) fn read(folder: &Path) -> (Vec<RecentFile>, Option<String>) {
     }
 }
 
-/// An entry as it is written.
+/// Encodes a path as an entry of the list.
 pub(super) fn text_of(path: &Path) -> String {
     match encode_path(path) {
         Some(bytes) => format!("{IN_BYTES}{bytes}"),
@@ -78,21 +78,22 @@ pub(super) fn text_of(path: &Path) -> String {
     }
 }
 
-/// What an entry stands for.
+/// Decodes an entry of the list to a path.
 pub(super) fn path_of(text: &str) -> PathBuf {
     text.strip_prefix(IN_BYTES).and_then(decode_path).unwrap_or_else(|| text.into())
 }
 
-/// A list with a file at its head.
+/// Puts a file at the head of a list, which is cut at [`MOST`].
 pub(super) fn put_first(list: &mut Vec<RecentFile>, latest: RecentFile) {
     list.retain(|known| known.path != latest.path);
     list.insert(0, latest);
     list.truncate(MOST);
 }
 
-/// Adds files to the list of a folder, the latest last, and gives it. What another window has added stays.
+/// Adds files to the list in a folder, the latest last, and returns the list. Entries of other windows stay.
 pub(super) fn add(folder: &Path, opened: &[RecentFile]) -> Result<Vec<RecentFile>, String> {
-    // Between reading and writing nobody else writes. Without locks, two windows must be quick to lose an entry.
+    // The lock keeps other windows from writing in between. Without locks, two windows lose an entry only if they
+    // write at nearly the same time.
     let _lock = hold_lock(&folder.join("recent.lock")).map_err(|err| err.to_string())?;
     let (mut list, _) = read(folder);
     for latest in opened {

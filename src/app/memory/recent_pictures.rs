@@ -1,4 +1,4 @@
-//! Small pictures of files that were opened: of each what its look showed last. A file for each, in a folder of their own.
+//! Thumbnails of recent files, with the last picture of each: one file each, in a folder of their own.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -10,18 +10,18 @@ use super::{is_builtin, thumbnail};
 use crate::data::fingerprint;
 use crate::export;
 
-/// The folder, beside the list.
+/// Name of the folder, beside the list.
 const FOLDER: &str = "recent";
 
-/// Names that are looked at in it: far more than are kept.
+/// Maximum number of directory entries that are read: far more than are kept.
 const MOST_NAMES: usize = 300;
 
-/// Where the picture of a file is: by a number that is made from all of its path.
+/// Path of a file's thumbnail, named by a hash of the file's path.
 fn picture_of(folder: &Path, file: &Path) -> PathBuf {
     folder.join(FOLDER).join(format!("{:016x}.png", fingerprint(&text_of(file))))
 }
 
-/// Keeps what a look of a file shows. Built-in volumes are in no list.
+/// Writes the thumbnail of a file. Built-in volumes are not in the list.
 pub(super) fn write(folder: &Path, file: &Path, picture: &ColorImage) -> Result<(), String> {
     if is_builtin(file) {
         return Ok(());
@@ -31,7 +31,7 @@ pub(super) fn write(folder: &Path, file: &Path, picture: &ColorImage) -> Result<
     thumbnail::write(picture, &picture_of(folder, &whole))
 }
 
-/// Removes pictures of files that are in the list no more.
+/// Removes thumbnails of files that are no longer in the list.
 pub(super) fn tidy(folder: &Path, listed: &[RecentFile]) {
     let kept: Vec<PathBuf> = listed.iter().map(|file| picture_of(folder, &file.path)).collect();
     let names = std::fs::read_dir(folder.join(FOLDER)).into_iter().flatten().flatten();
@@ -43,7 +43,7 @@ pub(super) fn tidy(folder: &Path, listed: &[RecentFile]) {
     }
 }
 
-/// Pictures for the menu, read when it is first opened after a file was.
+/// Cache of thumbnails for the menu, read when it is first opened after a file was opened.
 #[derive(Default)]
 pub(crate) struct RecentPictures {
     folder: Option<PathBuf>,
@@ -51,17 +51,17 @@ pub(crate) struct RecentPictures {
 }
 
 impl RecentPictures {
-    /// Those that are kept in a folder.
+    /// Creates a cache for the thumbnails in a folder.
     pub(super) fn of(folder: &Path) -> Self {
         Self { folder: Some(folder.to_owned()), read: Vec::new() }
     }
 
-    /// Reads them again when they are next asked for: there are others.
+    /// Drops all thumbnails, so that changed ones are read.
     pub(crate) fn forget(&mut self) {
         self.read.clear();
     }
 
-    /// The picture of a file, if there is one.
+    /// Returns the thumbnail of a file, if there is one.
     pub(crate) fn get(&mut self, file: &Path, ctx: &egui::Context) -> Option<TextureHandle> {
         let folder = self.folder.as_ref()?;
         if let Some((_, known)) = self.read.iter().find(|(known, _)| known == file) {

@@ -1,5 +1,6 @@
-//! Which way up things stood that were opened from a folder, in all windows of this user: the next file from there
-//! stands the same way.
+//! List of the up axes of folders, shared by all windows of this user.
+//!
+//! The next file of a folder gets the same up axis.
 
 use std::path::{Path, PathBuf};
 
@@ -9,17 +10,17 @@ use super::kept_list;
 use super::recent::{path_of, text_of};
 use crate::model::SceneAxis;
 
-/// Folders that are remembered: more than anybody works in at a time.
+/// Maximum number of remembered folders: more than a user works in at a time.
 pub(super) const MOST: usize = 100;
 
-/// A folder, and the axis that pointed up last.
+/// Folder with the axis that pointed up last.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Standing {
     pub folder: PathBuf,
     pub up: SceneAxis,
 }
 
-/// How it is written.
+/// Entry of the list as JSON.
 #[derive(Debug, Serialize, Deserialize)]
 struct Written {
     folder: String,
@@ -38,7 +39,7 @@ impl From<Written> for Standing {
     }
 }
 
-/// The list of a folder, the latest first; with a notice if it was damaged and has been put aside.
+/// Reads the list from a folder, the latest first; returns a notice if it was corrupt and was quarantined.
 pub(super) fn read(folder: &Path) -> (Vec<Standing>, Option<String>) {
     let (list, notice) = kept_list::read::<Written>(&path(folder));
     (list.into_iter().take(MOST).map(Standing::from).collect(), notice)
@@ -48,14 +49,14 @@ fn path(folder: &Path) -> PathBuf {
     folder.join("standing.json")
 }
 
-/// A list with what was chosen last at its head.
+/// Puts an entry at the head of a list, which is cut at [`MOST`].
 pub(super) fn put_first(list: &mut Vec<Standing>, latest: Standing) {
     list.retain(|known| known.folder != latest.folder);
     list.insert(0, latest);
     list.truncate(MOST);
 }
 
-/// Adds to the list of a folder, the latest last. What another window has added stays.
+/// Adds entries to the list in a folder, the latest last. Entries of other windows stay.
 pub(super) fn add(folder: &Path, chosen: Vec<Standing>) -> Result<(), String> {
     kept_list::change::<Written>(&path(folder), |list| {
         let mut list: Vec<_> = list.into_iter().map(Standing::from).collect();

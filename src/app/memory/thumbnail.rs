@@ -1,4 +1,4 @@
-//! Small pictures of looks.
+//! Thumbnails of looks as small PNG files.
 
 use std::path::Path;
 
@@ -7,10 +7,10 @@ use image::{RgbImage, imageops};
 
 use crate::export::{encode_png, write_atomically};
 
-/// Pixels along its longer edge: half as many again as the list shows, for dense screens.
+/// Longer edge of a thumbnail in pixels: 1.5 times the size in the list, for high-resolution screens.
 const EDGE: u32 = 192;
 
-/// Writes a picture as a small one; nothing of an empty one.
+/// Writes a picture as a thumbnail; an empty picture writes nothing.
 pub(super) fn write(picture: &ColorImage, path: &Path) -> Result<(), String> {
     let Some(small) = shrunk(picture) else { return Ok(()) };
     let (width, height) = small.dimensions();
@@ -19,7 +19,7 @@ pub(super) fn write(picture: &ColorImage, path: &Path) -> Result<(), String> {
     write_atomically(path, &png).map_err(|err| err.to_string())
 }
 
-/// A picture as a small one; none of nothing.
+/// Shrinks a picture to a thumbnail; `None` if it is empty.
 fn shrunk(picture: &ColorImage) -> Option<RgbImage> {
     let [width, height] = picture.size.map(|edge| u32::try_from(edge).unwrap_or(u32::MAX));
     let bytes = picture.pixels.iter().flat_map(|color| [color.r(), color.g(), color.b()]).collect();
@@ -30,7 +30,7 @@ fn shrunk(picture: &ColorImage) -> Option<RgbImage> {
     Some(imageops::thumbnail(&whole, width, height))
 }
 
-/// Reads one; none where there is none, or it is none of ours.
+/// Reads a thumbnail; `None` if the file is missing, invalid or larger than this program writes.
 pub(super) fn read(path: &Path) -> Option<ColorImage> {
     let bytes = crate::data::read_small(path).ok()?;
     let mut reader = image::ImageReader::with_format(std::io::Cursor::new(bytes), image::ImageFormat::Png);

@@ -1,4 +1,4 @@
-//! Section "Camera".
+//! Section "Camera" of the side panel: projection, orientation, view angles, distance and sampling.
 
 use eframe::egui::Ui;
 
@@ -16,19 +16,19 @@ const PROJECTIONS: [(Projection, Named); 2] = [
 
 const FITS: [(Fit, Named); 2] = [(Fit::Frame, text::camera::FRAME), (Fit::Height, text::camera::HEIGHT)];
 
-/// Shows the section.
+/// Shows the section "Camera" of the side panel.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     let unit = panels.scene_unit();
     let (camera, first) = (&mut panels.settings.camera, &panels.defaults.camera);
-    // Of an object that stands another way up, no view is the first one.
+    // If the object stands another way up than at first, no angle of the first look applies.
     let of_view = if camera.up == first.up { first.clone() } else { camera.clone() };
     choice(ui, text::camera::PROJECTION, &mut camera.projection, &PROJECTIONS);
-    // Lights and floor go with it.
+    // Lights and floor turn with the object.
     let mut up = camera.up;
     if choice(ui, text::camera::UP, &mut up, &SceneAxis::ALL.map(|axis| (axis, text::camera::axis(axis)))) {
         panels.commands.push(Command::TurnObject(ObjectTurn::Upright(up)));
     }
-    // Stored as 0 … 360, shown around the middle.
+    // Stored as 0° … 360°, shown as −180° … 180°.
     let mut azimuth_deg = (camera.azimuth_deg + 180.0).rem_euclid(360.0) - 180.0;
     let default_deg = (of_view.azimuth_deg + 180.0).rem_euclid(360.0) - 180.0;
     let before_deg = azimuth_deg;

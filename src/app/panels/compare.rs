@@ -1,4 +1,4 @@
-//! Section "Compare": two looks of one scene, side by side.
+//! Section "Compare" of the side panel: two looks of one scene, side by side.
 
 use eframe::egui::{self, Ui};
 
@@ -8,7 +8,7 @@ use crate::app::common::commands::Command;
 use crate::app::viewport::compare::Compare;
 use crate::model::{Settings, Variant};
 
-/// Shows the section.
+/// Shows the section "Compare" of the side panel.
 pub(super) fn show(ui: &mut Ui, compare: &mut Compare, settings: &mut Settings, commands: &mut Vec<Command>) {
     switch(ui, text::compared::ON, &mut compare.on);
     ui.add_enabled_ui(compare.on, |ui| {

@@ -1,4 +1,4 @@
-//! Section "Clipping": the crop box and the clip plane.
+//! Section "Clipping" of the side panel: the crop box and the clip plane.
 
 use eframe::egui::{self, DragValue, Ui};
 use glam::DVec3;
@@ -10,7 +10,7 @@ use crate::app::common::commands::Command;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::model::{CropBox, CutEffect, MIN_CROP};
 
-/// Shows the section.
+/// Shows the section "Clipping" of the side panel.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     let Some(volume) = panels.volume else {
         ui.weak(text::cuts::NOTHING_OPEN);
@@ -52,14 +52,14 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     });
 }
 
-/// Where the box begins and ends along an axis, in voxels.
+/// Row for the extent of the crop box along an axis, in voxels.
 fn extent(ui: &mut Ui, crop: &mut CropBox, first: &CropBox, axis: usize, volume: &VolumeFacts) {
     let name = text::cuts::AXES[axis];
     let voxels = volume.dims[axis] as f64;
     row(ui, Named { name, tip: text::cuts::EXTENT_TIP }, |ui| {
         let (mut from, mut to) = (crop.low[axis] * voxels, crop.high[axis] * voxels);
         let least = MIN_CROP * voxels;
-        // All of it is 300 points of the mouse.
+        // Dragging over 300 points covers the whole axis.
         let speed = voxels / 300.0;
         let begins = DragValue::new(&mut from).range(0.0..=to - least).speed(speed).max_decimals(0);
         let response = ui.name_inputs(text::cuts::crop_from(name), |ui| ui.add(begins));
@@ -81,7 +81,7 @@ fn extent(ui: &mut Ui, crop: &mut CropBox, first: &CropBox, axis: usize, volume:
     });
 }
 
-/// What becomes of what is cut away.
+/// Row for the treatment of clipped material: removed, hidden or without shadow.
 fn effect(ui: &mut Ui, named: Named, effect: &mut CutEffect) {
     row(ui, named, |ui| {
         let combo = egui::ComboBox::from_id_salt(named.name).selected_text(effect_name(*effect)).width(150.0);

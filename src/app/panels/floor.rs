@@ -1,4 +1,4 @@
-//! Section "Floor": the floor on which shadows fall.
+//! Section "Floor" of the side panel: the plane on which shadows fall.
 
 use eframe::egui::Ui;
 
@@ -6,13 +6,13 @@ use super::super::text;
 use super::Panels;
 use super::controls::{Number, color, row, switch};
 
-/// Shows the section.
+/// Shows the section "Floor" of the side panel.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     let unit = panels.scene_unit();
     let reach = panels.volume.map_or(1.0, |volume| volume.scene.support_radius());
     let (floor, defaults) = (&mut panels.settings.floor, &panels.defaults.floor);
     switch(ui, text::floor::ON, &mut floor.on);
-    // Under an object that stands another way up, no height is the first one.
+    // If the object stands another way up than at first, the height of the first look does not apply.
     let is_up = panels.settings.camera.up == panels.defaults.camera.up;
     let first_height = if is_up { defaults.height } else { floor.height };
     ui.add_enabled_ui(floor.on, |ui| {

@@ -1,4 +1,4 @@
-//! Section "Lights".
+//! Section "Lights" of the side panel: the list of lights and the settings of the selected one.
 
 use eframe::egui::{self, Ui};
 use glam::DVec3;
@@ -25,8 +25,8 @@ const SHAPES: [(LightShape, Named); 4] = [
     (LightShape::Ball, text::lights::BALL),
 ];
 
-/// The light that the reset buttons of a light put back: the one of the first look that has its name or, if it was renamed,
-/// its place; of lights that were added, as they were then.
+/// Light that the reset buttons restore: the one of the first look with the same name or, if the light was renamed,
+/// at the same index; for added lights, their initial state.
 fn original(first: &[Light], lights: &[Light], index: usize) -> Light {
     let Some(light) = lights.get(index) else { return Light::default() };
     let is_here = |first: &&Light| lights.iter().any(|light| light.name == first.name);
@@ -41,7 +41,7 @@ fn original(first: &[Light], lights: &[Light], index: usize) -> Light {
     of_first_look.or_else(renamed).cloned().unwrap_or_else(added)
 }
 
-/// The list of lights, with the settings of the selected one under it.
+/// Shows the list of lights, with the settings of the selected one below it.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     let mut removed = None;
     let unit = panels.scene_unit();
@@ -67,14 +67,14 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     }
     let room = panels.settings.lights.len() < MAX_LIGHTS;
     let button = ui.add_enabled(room, egui::Button::new(text::lights::ADD.name));
-    // What it costs is said before it is added.
+    // The tooltip states the cost before the light is added.
     let cost = panels.facts.light_cost().map(|cost| text::shadows::cost(cost.ms, cost.mebibytes));
     if button.on_hover_text(text::lights::add_tip(cost.as_deref())).clicked() {
         panels.commands.push(Command::AddLight);
     }
 }
 
-/// Switch, colour and name. Whether the user selected it.
+/// Shows switch, colour and name of a light; returns true if the user selected it.
 fn head(ui: &mut Ui, light: &mut Light, index: usize, selected: bool) -> bool {
     ui.horizontal(|ui| {
         let on = ui.name_inputs(text::lights::switch(&light.name), |ui| ui.checkbox(&mut light.on, ""));
@@ -91,7 +91,7 @@ fn head(ui: &mut Ui, light: &mut Light, index: usize, selected: bool) -> bool {
     .inner
 }
 
-/// Everything else. Whether the light is to be removed.
+/// Shows all other settings of the selected light; returns true if it is to be removed.
 fn body(
     ui: &mut Ui,
     light: &mut Light,
@@ -148,7 +148,7 @@ fn body(
     })
 }
 
-/// What shines, and how large it is.
+/// Rows for the emitter of a light: its shape and size.
 fn shape(ui: &mut Ui, light: &mut Light, first: &Light, unit: SceneUnit) {
     choice(ui, text::lights::SHAPE, &mut light.shape, &SHAPES);
     if light.shape == LightShape::Point {
@@ -171,7 +171,7 @@ fn shape(ui: &mut Ui, light: &mut Light, first: &Light, unit: SceneUnit) {
     }
 }
 
-/// A lampshade.
+/// Rows for the spotlight cone (hood) of a positional light.
 fn hood(ui: &mut Ui, hood: &mut Hood, first: &Hood) {
     switch(ui, text::lights::HOOD, &mut hood.on);
     if hood.on {
@@ -182,9 +182,9 @@ fn hood(ui: &mut Ui, hood: &mut Hood, first: &Hood) {
     }
 }
 
-/// Takes a light that shines from a point from now on to where it is seen, on the line on which it was.
+/// Moves a light that has just become positional into the visible part of the scene, along the line from the centre.
 fn bring_into_sight(light: &mut Light, camera: &Camera) {
-    // In shares of a picture that is as wide as high: not under its border, nor under what lies over that.
+    // In shares of a square picture: away from its border and from the overlays there.
     let is_seen = |position: DVec3| {
         let inside = |at: f64| (0.1..=0.9).contains(&at);
         camera.pixel_from_scene(position, 1.0, 1.0).is_some_and(|(x, y, _)| inside(x) && inside(y))
@@ -194,20 +194,21 @@ fn bring_into_sight(light: &mut Light, camera: &Camera) {
     }
     let lamp = light.in_scene(camera);
     let mut position = DVec3::from(lamp.position);
-    // No nearer than the volume's own size.
+    // No nearer than 1, half of the volume's longest edge.
     while !is_seen(position) && position.length() > 1.0 {
         position *= 0.95;
     }
     light.set_scene_position(position, camera);
 }
 
-/// How far from the middle of the volume, whose longest edge is 2 long, a light is added: outside every volume.
+/// Distance of an added light from the centre of the volume, in scene units (the longest edge is 2): outside every
+/// volume.
 const ADDED_DISTANCE: f64 = 3.0;
 
-/// Places for a new light around the line of sight.
+/// Number of candidate positions for a new light around the line of sight.
 const PLACES: u32 = 8;
 
-/// Colours of lights that are added, so that each is told from the others: as pale as gels of photographers.
+/// Colours of added lights, sRGB, so that they can be told apart: as pale as photographers' gels.
 const COLORS: [[f32; 3]; 6] = [
     [1.0, 0.95, 0.86],
     [0.74, 0.85, 1.0],
@@ -217,12 +218,12 @@ const COLORS: [[f32; 3]; 6] = [
     [1.0, 0.80, 0.84],
 ];
 
-/// Intensity of a light that is added as one of so many: all of them together grow brighter by less than each.
+/// Intensity of the n-th light. It falls with √n, so that all lights together grow brighter by less than each adds.
 fn added_intensity(count: usize) -> f64 {
     0.6 / (count as f64).sqrt()
 }
 
-/// Adds a light beside the viewer and gives its index.
+/// Adds a light near the viewer and returns its index; `None` if there are [`MAX_LIGHTS`] already.
 pub(in crate::app) fn add_light(settings: &mut Settings) -> Option<usize> {
     let index = settings.lights.len();
     (index < MAX_LIGHTS).then(|| {
@@ -237,12 +238,12 @@ pub(in crate::app) fn add_light(settings: &mut Settings) -> Option<usize> {
     })
 }
 
-/// Where a new light is in nobody's way: of places around the line of sight, all on the viewer's side, the one that is
-/// farthest from the lights that are there.
+/// Free position for a new light: of [`PLACES`] positions around the line of sight, all on the viewer's side, the one
+/// farthest from the existing lights, in scene units.
 fn free_place(camera: &Camera, lights: &[Light]) -> [f64; 3] {
     let view = camera.scene_from_view();
     let place = |at: u32| {
-        // The first to the upper right, as one would hold a lamp.
+        // The first is at the upper right, as a hand would hold a lamp.
         let (sin, cos) = (f64::from(at) * std::f64::consts::TAU / f64::from(PLACES) + 0.8).sin_cos();
         (view.z_axis + 0.85 * (cos * view.x_axis + sin * view.y_axis)).normalize_or(DVec3::Z)
     };
@@ -271,7 +272,7 @@ mod tests {
         add_light(&mut settings);
         add_light(&mut settings);
         assert!((0..4).all(|at| is_original(&settings, at)));
-        // Whatever its name and its place.
+        // Independent of the light's name and index.
         settings.lights[1].name = "Rim".to_owned();
         assert!((0..4).all(|at| is_original(&settings, at)));
         settings.lights[1].name = "Fill".to_owned();

@@ -1,4 +1,4 @@
-//! The side panel. Panels see settings and read-only facts, never the renderer.
+//! Side panel of the main window. Panels see settings and read-only facts, never the renderer.
 
 mod camera;
 mod compare;
@@ -29,30 +29,30 @@ use crate::model::Settings;
 pub(super) use lights::add_light;
 pub(super) use shadows::set_linked;
 
-/// What panels work with.
+/// Context of the panels: the settings that they edit, and facts that they show.
 pub(super) struct Panels<'a> {
-    /// The look.
+    /// Current settings, edited in place.
     pub settings: &'a mut Settings,
-    /// What reset buttons put back.
+    /// First look, which the reset buttons restore.
     pub defaults: &'a Settings,
-    /// The open volume.
+    /// Facts about the open volume, if there is one.
     pub volume: Option<&'a VolumeFacts>,
-    /// The kind of data that it is treated as, if not its own.
+    /// Kind of data that the volume is treated as, if not its own.
     pub treated_as: Option<KindName>,
-    /// The light whose handle is marked.
+    /// Index of the light whose handle is marked.
     pub selected_light: &'a mut usize,
-    /// Two looks in one picture.
+    /// State of the comparison of two looks.
     pub compare: &'a mut Compare,
-    /// What is known of the renderer's work.
+    /// Figures about the renderer's work: adapter, costs, memory.
     pub facts: &'a Facts,
-    /// A balance is being measured.
+    /// True while a balance is being measured.
     pub balancing: bool,
-    /// What the user asks for.
+    /// Commands that the user has given in this frame.
     pub commands: &'a mut Vec<Command>,
 }
 
 impl Panels<'_> {
-    /// The unit in which lengths are shown.
+    /// Unit in which lengths are shown: that of the volume, or voxels where its scale is unknown.
     fn scene_unit(&self) -> SceneUnit {
         let per_mm = |unit: LengthUnit, mm: f64| SceneUnit { per_scene: mm / unit.mm, suffix: unit.suffix };
         match self.volume {
@@ -62,7 +62,7 @@ impl Panels<'_> {
     }
 }
 
-/// Shows all sections, in the order in which people work. Whatever they hold, the panel is as wide as it was made.
+/// Shows all sections, in the usual order of work. The panel keeps its width, whatever its contents need.
 pub(super) fn show(ui: &mut egui::Ui, panels: &mut Panels<'_>) {
     let room = ui.available_rect_before_wrap();
     let mut inside = ui.new_child(egui::UiBuilder::new().max_rect(room));
@@ -94,7 +94,7 @@ fn all_sections(ui: &mut egui::Ui, panels: &mut Panels<'_>) {
     });
 }
 
-/// A section with what its header says.
+/// Shows a section and the state of its header, and resets it on request.
 fn section(
     ui: &mut egui::Ui,
     title: &'static str,

@@ -1,5 +1,4 @@
-//! Kernel, slab and quadrature: the same rows for the light's and for the eye's pass; and what fills the
-//! sheets.
+//! Rows for the sampling of the light pass and the eye pass: kernel, slab and quadrature; and for the engine.
 
 use eframe::egui::Ui;
 
@@ -7,7 +6,7 @@ use super::super::text::{self, Named};
 use super::controls::{Number, choice};
 use crate::model::{Classification, Engine, Gradients, Kernel, Quadrature, Sampling, SheetOrder, Slabs};
 
-/// σ where a Gaussian is chosen anew.
+/// Standard deviation σ of a newly chosen Gaussian kernel, in voxels.
 const SIGMA: f64 = 0.6;
 
 const QUADRATURES: [(Quadrature, Named); 2] =
@@ -36,14 +35,14 @@ const GRADIENTS: [(Gradients, Named); 3] = [
     (Gradients::Sheets, text::sampling::NORMALS_OF_SHEETS),
 ];
 
-/// Kernel and slab of the first look, which reset buttons put back.
+/// Kernel and slab thickness of the first look, which reset buttons restore.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FirstLook {
     pub kernel: Kernel,
     pub slab: f64,
 }
 
-/// Shows the three rows.
+/// Shows the rows for kernel, slab thickness and quadrature.
 pub(super) fn show(
     ui: &mut Ui,
     kernel: &mut Kernel,
@@ -67,12 +66,12 @@ pub(super) fn show(
     choice(ui, text::sampling::QUADRATURE, quadrature, &QUADRATURES);
 }
 
-/// Shows whether the eye's slabs are equally thick.
+/// Shows the row that chooses between slabs by need and even slabs for the eye pass.
 pub(super) fn show_slabs(ui: &mut Ui, slabs: &mut Slabs) {
     choice(ui, text::sampling::SLABS, slabs, &SLABS);
 }
 
-/// Shows what fills the sheets of both passes, and where the eye's normals come from.
+/// Shows the rows for classification, engine, sheet order, and the source of the normals of the eye pass.
 pub(super) fn show_engine(ui: &mut Ui, sampling: &mut Sampling) {
     choice(ui, text::sampling::CLASSIFICATION, &mut sampling.classification, &CLASSIFICATIONS);
     choice(ui, text::sampling::ENGINE, &mut sampling.engine, &ENGINES);

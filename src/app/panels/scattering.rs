@@ -9,7 +9,7 @@ use super::controls::{Number, advanced};
 use super::shadows::soft_resolution;
 use crate::model::{MAX_ANISOTROPY, MAX_BOUNCES, SKY_DIRECTIONS};
 
-/// Shows the section.
+/// Shows the rows of multiple scattering in the section "Sky and scattering".
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     let (scattering, defaults) = (&mut panels.settings.scattering, &panels.defaults.scattering);
     let mut bounces = f64::from(scattering.bounces);

@@ -1,4 +1,4 @@
-//! Section "Shading": how material answers to light, and what happens to the picture at the end.
+//! Section "Shading" of the side panel: reflection of the material, exposure, tone map and background.
 
 use eframe::egui::Ui;
 
@@ -14,9 +14,9 @@ const TONE_MAPS: [(ToneMap, Named); 2] =
 const SIDES: [(Sides, Named); 2] =
     [(Sides::One, text::shading::ONE_SIDE), (Sides::Two, text::shading::BOTH_SIDES)];
 
-/// Shows the section.
+/// Shows the section "Shading" of the side panel.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
-    // A sky takes the place of the ambient light.
+    // A sky replaces the ambient light.
     let is_flat = !panels.settings.sky.is_on();
     let (shading, defaults) = (&mut panels.settings.shading, &panels.defaults.shading);
     let emission = Number::new(text::shading::EMISSION, 0.0..=2.0);

@@ -1,4 +1,4 @@
-//! Section "Shadows", with the cures for darkness.
+//! Section "Shadows" of the side panel, with the remedies for pictures that are too dark.
 
 use eframe::egui::{self, Ui};
 
@@ -14,7 +14,7 @@ use crate::model::{
     Resolution, ReverseKernel, ShadowAlgorithm, Shadows,
 };
 
-/// From this share of black the meter warns: a third of the picture tells nothing any more.
+/// Share of nearly black pixels from which on the meter warns: a third of the picture carries no information then.
 const MUCH_DARKNESS: f64 = 0.3;
 
 const ALGORITHMS: [(ShadowAlgorithm, Named); 4] = [
@@ -42,7 +42,7 @@ const STORAGES: [(LightStorage, Named); 3] = [
 const DEPOSITS: [(Deposit, Named); 2] =
     [(Deposit::SlabMean, text::shadows::SLAB_MEAN), (Deposit::Front, text::shadows::FRONT)];
 
-/// None of them is chosen while settings are at no level.
+/// Quality levels; none is selected while the settings match no level.
 const LEVELS: [(Option<Quality>, Named); 4] = [
     (Some(Quality::Fast), text::shadows::FAST),
     (Some(Quality::Standard), text::shadows::STANDARD),
@@ -59,7 +59,7 @@ const NEAR_FIELDS: [(NearField, Named); 3] = [
 const REVERSE_KERNELS: [(ReverseKernel, Named); 2] =
     [(ReverseKernel::Tent, text::shadows::TENT), (ReverseKernel::Forward, text::shadows::FORWARD)];
 
-/// Shows the section.
+/// Shows the section "Shadows" of the side panel.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     choice(ui, text::shadows::ALGORITHM, &mut panels.settings.shadows.algorithm, &ALGORITHMS);
     let mut level = Quality::of(panels.settings);
@@ -112,13 +112,13 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     });
 }
 
-/// What a volume takes of another resolution than that of the one that was measured.
+/// Formats the cost of a light volume at another resolution, scaled from the one that was measured.
 fn at_resolution(cost: LightCost, measured: Resolution, wanted: Resolution) -> String {
     let cost = cost.finer(measured.divisor() as f64 / wanted.divisor() as f64);
     text::shadows::cost(cost.ms, cost.mebibytes)
 }
 
-/// How finely points are lit.
+/// Row for the resolution of the light volumes of point lights.
 fn resolution(ui: &mut Ui, panels: &mut Panels<'_>) {
     let (lights, measured) = (&panels.settings.lights, panels.settings.shadows.resolution);
     let cost =
@@ -129,7 +129,7 @@ fn resolution(ui: &mut Ui, panels: &mut Panels<'_>) {
     choice_with(ui, text::shadows::RESOLUTION, resolution, &RESOLUTIONS, cost_of);
 }
 
-/// How finely lights that have a size do.
+/// Row for the resolution of the light volumes of area lights.
 fn area_resolution(ui: &mut Ui, panels: &mut Panels<'_>) {
     let (lights, shadows) = (&panels.settings.lights, &panels.settings.shadows);
     let dims = panels.volume.map(|volume| volume.dims);
@@ -145,7 +145,7 @@ fn area_resolution(ui: &mut Ui, panels: &mut Panels<'_>) {
     choice_with(ui, text::shadows::AREA_RESOLUTION, resolution, &RESOLUTIONS, cost_of);
 }
 
-/// How finely light is found that comes from all around: what there is once, and took so much.
+/// Row for the resolution of sky visibility or bounces, which exist once per volume, with their measured cost.
 pub(super) fn soft_resolution(
     ui: &mut Ui,
     resolution: &mut Resolution,
@@ -159,7 +159,7 @@ pub(super) fn soft_resolution(
     choice_with(ui, text::shadows::RESOLUTION, resolution, &RESOLUTIONS, cost_of);
 }
 
-/// What takes effect without refilling a light volume.
+/// Rows for the settings that take effect without refilling a light volume.
 fn live(ui: &mut Ui, panels: &mut Panels<'_>) {
     let rays_nearby = panels.settings.near_field() != NearField::Off;
     let (shadows, defaults) = (&mut panels.settings.shadows, &panels.defaults.shadows);
@@ -170,7 +170,7 @@ fn live(ui: &mut Ui, panels: &mut Panels<'_>) {
     let gain = Number::new(text::shadows::GAIN, 0.1..=10.0).log();
     gain.show(ui, &mut shadows.gain, defaults.gain);
     let bias = Number::new(text::shadows::LIGHT_BIAS, 0.0..=2.0).unit(text::common::VOX);
-    // Rays nearby take its place.
+    // Near-field rays replace the bias.
     ui.add_enabled_ui(!rays_nearby, |ui| bias.show(ui, &mut shadows.bias_voxels, defaults.bias_voxels));
 }
 
@@ -178,11 +178,11 @@ fn balance(ui: &mut Ui, panels: &mut Panels<'_>) {
     let balance = Number::new(text::shadows::BALANCE, 0.1..=10.0).unit(TIMES).log();
     let shadows = &mut panels.settings.shadows;
     let before = shadows.balance;
-    // One that is kept is measured, and not set: there is nothing to put back.
+    // A balance that is kept is measured rather than set, so there is no value to restore.
     let first = if shadows.keep_balanced { before } else { panels.defaults.shadows.balance };
     balance.show(ui, &mut shadows.balance, first);
     if shadows.balance.to_bits() != before.to_bits() {
-        // Set by hand, it stays.
+        // A balance set by hand is no longer measured.
         shadows.keep_balanced = false;
     }
     unlabelled(ui, |ui| {
@@ -201,7 +201,7 @@ fn balance(ui: &mut Ui, panels: &mut Panels<'_>) {
     });
 }
 
-/// How much of the picture is lost in the dark.
+/// Meter of the share of nearly black pixels in the picture.
 fn darkness(ui: &mut Ui, share: Option<f64>) {
     let named = text::shadows::NEARLY_BLACK;
     row(ui, named, |ui| {
@@ -225,7 +225,7 @@ fn opacity(ui: &mut Ui, panels: &mut Panels<'_>) {
     }
 }
 
-/// Links or unlinks the lighting curve; the first time it starts as a copy of the eye's.
+/// Links or unlinks the lighting curve; when first unlinked, it starts as a copy of the eye's curve.
 pub(in crate::app) fn set_linked(settings: &mut crate::model::Settings, linked: bool) {
     settings.lighting.linked = linked;
     if !linked && settings.lighting.curve.points.is_empty() {

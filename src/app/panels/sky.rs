@@ -1,4 +1,4 @@
-//! Section "Sky and scattering", first half: light from all around.
+//! Section "Sky and scattering", first half: light from all directions.
 
 use eframe::egui::{Label, Ui};
 
@@ -17,7 +17,7 @@ const MODES: [(SkyMode, Named); 4] = [
     (SkyMode::Picture, text::sky::PICTURE),
 ];
 
-/// Shows the section.
+/// Shows the rows of the sky in the section "Sky and scattering".
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     let (sky, defaults) = (&mut panels.settings.sky, &panels.defaults.sky);
     let was_picture = sky.mode == SkyMode::Picture;
@@ -61,7 +61,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     });
 }
 
-/// Which panorama it is, and the way to another.
+/// Row for the environment map: its name, and a button to choose another.
 fn surroundings(ui: &mut Ui, picture: &SkyPicture, commands: &mut Vec<Command>) {
     row(ui, text::sky::SURROUNDINGS, |ui| {
         if ui.button(text::sky::CHOOSE).clicked() {

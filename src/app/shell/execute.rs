@@ -1,4 +1,4 @@
-//! Carries out commands and takes in what threads have finished.
+//! Execution of commands, and collection of the results of worker threads.
 
 use std::path::{Path, PathBuf};
 
@@ -19,7 +19,7 @@ use crate::gpu::GpuError;
 use crate::model::{COLOR_MAPS, Camera, Settings};
 
 impl App {
-    /// Does what the user asked for.
+    /// Executes a command of the user.
     pub(crate) fn execute(&mut self, command: Command, frame: &eframe::Frame, ctx: &egui::Context) {
         match command {
             Command::OpenDialog => self.files.ask(Purpose::OpenVolume, frame, ctx),
@@ -158,15 +158,14 @@ impl App {
                 self.settings.lights = lights;
             }
             Command::UseLook(look) => {
-                // What is kept is no part of it, nor is how truly it is drawn, nor what is cut away, nor what is
-                // known of the file.
+                // A suggested look leaves saved views, render quality, cuts and corrections of the file as they are.
                 let look = look.drawn_as(&self.settings);
                 let Settings { cuts, kept, volume, .. } = std::mem::take(&mut self.settings);
                 self.settings = Settings { cuts, kept, volume, ..look };
                 self.selected_light = 0;
             }
             Command::TryLooks => {
-                // They are made from the first look.
+                // Suggested looks derive from the first look, which must have the current up axis.
                 if self.first_look_stands(Some(command), ctx) {
                     self.contact_sheet.open(Sheet::Looks);
                 }
@@ -213,13 +212,13 @@ impl App {
         ctx.request_repaint();
     }
 
-    /// Opens the section of what was switched on, and the panel with it; not where the picture is to be alone.
+    /// Opens a section and the side panel when its feature is switched on, unless only the picture is shown.
     fn show_section(&mut self, ctx: &egui::Context, section: &'static str, is_on: bool) {
         self.layout.side |= is_on && !self.layout.picture_only;
         reveal::show_section(ctx, section, is_on);
     }
 
-    /// Takes in what threads have finished.
+    /// Collects the results that worker threads have finished.
     pub(crate) fn collect(&mut self, ctx: &egui::Context) {
         match self.loader.take() {
             None => {}
@@ -232,7 +231,7 @@ impl App {
             Some(Outcome::NotDescribed { path, why, guess }) => {
                 self.raw_dialog.ask(&path, why, guess, ctx);
             }
-            // A look that waits for this volume goes on waiting.
+            // A look that is pending for this volume stays pending.
             Some(Outcome::Weighed { source, reading, weighed }) => self.roomy.ask(source, *reading, weighed),
             Some(Outcome::Failed { short, details }) => {
                 self.pending = None;
@@ -279,18 +278,18 @@ impl App {
         if let Some((purpose, path)) = self.files.take(ctx) {
             self.chosen(purpose, &path, ctx);
             if purpose == Purpose::ExportPicture {
-                // The desktop's dialog has asked.
+                // The desktop's file dialog has already asked before overwriting.
                 self.export.agree_to(&path);
             }
         }
     }
 
     pub(in crate::app) fn viewport_size(&self) -> [u32; 2] {
-        // Before there is a picture, as many pixels as the smallest usual screens have.
+        // Before there is a picture: the resolution of the smallest common screens.
         self.canvas.map_or([1280, 720], |canvas| canvas.room.map(|n| n.max(1)))
     }
 
-    /// A file was chosen or typed.
+    /// Handles a file that was chosen in a dialog or typed.
     pub(in crate::app) fn chosen(&mut self, purpose: Purpose, path: &Path, ctx: &egui::Context) {
         match purpose {
             Purpose::OpenVolume | Purpose::OpenFolder => self.open(path, ctx),
@@ -324,13 +323,13 @@ impl App {
         }
     }
 
-    /// What is to be exported; a message if there is nothing.
+    /// Returns the subject of an export; shows a message if there is no picture.
     pub(in crate::app) fn subject(&mut self) -> Option<export::Subject> {
         let Some(dataset) = self.viewport.dataset() else {
             self.messages.note(text::messages::NO_PICTURE);
             return None;
         };
-        // Whatever is on its way: the picture is of the volume that there is.
+        // Ignores a correction in progress: the picture shows the volume that is loaded.
         let settings = Settings { volume: *dataset.volume().corrections(), ..self.settings.clone() };
         Some(export::Subject {
             context: self.viewport.context().clone(),
@@ -361,7 +360,7 @@ impl App {
         }
     }
 
-    /// The renderer gave up on something. When the device is gone, another window takes the place of this one.
+    /// Handles an error of the renderer. After the loss of the device, another window takes the place of this one.
     pub(crate) fn rendering_failed(&mut self, err: &GpuError, ctx: &egui::Context) {
         if self.viewport.is_lost() {
             self.end_for_another(ctx);

@@ -1,4 +1,4 @@
-//! The menu bar.
+//! Menu bar with the commands, the name of the open volume and its channels.
 
 use eframe::egui::{self, Button, ThemePreference};
 
@@ -13,52 +13,53 @@ use crate::data::load::{Aspect, Dimension, Held};
 use crate::data::{plain, synthetic};
 use crate::model::{MAX_LIGHTS, MAX_NAME, ObjectTurn, Projection, Rig, Settings, StandardView};
 
-/// Characters of a path under the pointer: the longest that there are.
+/// Maximum number of characters of a path in a tooltip: the longest path that systems allow.
 const LONGEST_PATH: usize = 4096;
 
-/// Points of a file's name in a menu: menus stay narrower than the smallest window.
+/// Maximum width of a file name in a menu, in points: menus stay narrower than the smallest window.
 const LONGEST_NAME: f32 = 300.0;
 
-/// Points of the longer edge of a recent file's picture: what it is of can be told, and the list fits on low screens.
+/// Longer edge of a recent file's thumbnail, in points: its subject is recognisable, and the list fits on low
+/// screens.
 const RECENT_EDGE: f32 = 48.0;
 
-/// What the menu shows as chosen.
+/// Inputs of the menu bar: the state that it shows, and the values that it changes.
 pub(crate) struct Menu<'a> {
-    /// The look.
+    /// Settings of the current look.
     pub settings: &'a mut Settings,
-    /// The open volume's name, and its voxels and their size, for the right end of the bar.
+    /// Name, dimensions and spacing of the open volume, for the right end of the bar.
     pub title: Option<Title>,
-    /// What a step back changes, or one forward; `None` where there is none.
+    /// Describes the next undo (`true`) or redo (`false`); `None` where there is none.
     pub step: &'a dyn Fn(bool) -> Option<String>,
-    /// What is on screen.
+    /// Visibility of the parts of the window.
     pub shown: Shown,
-    /// What the open file holds.
+    /// Series, channels, time steps and components of the open file.
     pub several: Option<&'a Held>,
-    /// Files that were opened, the latest first.
+    /// Recently opened files, the latest first.
     pub recent: &'a [RecentFile],
-    /// What they look like.
+    /// Thumbnails of the recent files.
     pub recent_pictures: &'a mut RecentPictures,
-    /// Whether the next volume is shown as this one.
+    /// True if the next volume keeps the current look.
     pub keeps_look: bool,
-    /// Runs that have ended, the latest first.
+    /// Looks of earlier runs, the latest first.
     pub earlier: &'a [EarlierRun],
-    /// Milliseconds that a frame may take while something moves.
+    /// Time budget of a preview frame, in ms; `None` is automatic.
     pub frame_ms: &'a mut Option<f64>,
-    /// What the user asks for.
+    /// Queue of the commands that the user issues.
     pub commands: &'a mut Vec<Command>,
 }
 
-/// What is written of the open volume.
+/// Description of the open volume at the right end of the bar.
 #[derive(Debug, Clone)]
 pub(crate) struct Title {
-    /// The volume's name.
+    /// Name of the open volume.
     pub name: String,
-    /// Its voxels, and their size.
+    /// Dimensions of the volume, and its voxel spacing.
     pub facts: String,
 }
 
 impl Title {
-    /// Shows it in what is left of the bar: the facts are whole, and the middle of a long name is left out.
+    /// Shows the title in the space left in the bar: the facts in full, a long name elided in the middle.
     fn show(&self, ui: &mut egui::Ui) {
         let facts = text::menu::title("", &self.facts);
         let room = ui.available_width() - text_width(ui, &facts, &egui::TextStyle::Body);
@@ -71,26 +72,26 @@ impl Title {
     }
 }
 
-/// Parts of the window that can be switched off.
+/// Visibility of the parts of the window that can be switched off.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Shown {
-    /// The side panel.
+    /// Visibility of the side panel.
     pub side: bool,
-    /// The transfer function editor.
+    /// Visibility of the transfer function editor.
     pub transfer: bool,
-    /// The strip of kept views and looks.
+    /// Visibility of the strip of saved views and looks.
     pub kept: bool,
-    /// The handles of the lights.
+    /// Visibility of the light handles.
     pub handles: bool,
-    /// Two looks instead of one.
+    /// True while two looks are compared.
     pub compares: bool,
-    /// Chips of the lights, box, scale bar and cube.
+    /// Visibility of the light chips, bounding box, scale bar and orientation cube.
     pub overlay: bool,
-    /// What is under the pointer.
+    /// True while the probe explains the sample under the pointer.
     pub probe: bool,
 }
 
-/// Shows the bar.
+/// Shows the menu bar at the top of the window.
 pub(crate) fn show(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     egui::Panel::top("menu").resizable(false).frame(theme::panel(ui)).show(ui, |ui| {
         egui::MenuBar::new().ui(ui, |ui| {
@@ -119,7 +120,7 @@ pub(crate) fn show(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     });
 }
 
-/// What of a file of several volumes is shown, where nobody can miss it: beside its name.
+/// Shows the current series, channel, time step or component beside the file name, where it cannot be missed.
 fn several(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     let Some(held) = menu.several else { return };
     for aspect in Aspect::ALL.into_iter().rev() {
@@ -127,7 +128,7 @@ fn several(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
         let at = all.at();
         let named = match aspect {
             Aspect::Component => Some(all.name(at)),
-            // Series and time steps have long names, or none.
+            // Names of series and time steps are long or missing.
             Aspect::Of(Dimension::Channel | Dimension::Array) => all.name_in_file(at).map(str::to_owned),
             Aspect::Of(_) => None,
         };
@@ -145,7 +146,7 @@ fn item(ui: &mut egui::Ui, menu: &mut Menu<'_>, command: Command, enabled: bool)
     }
 }
 
-/// A step of the history, with what it changes.
+/// Shows the entry of undo or redo, with the change that it affects.
 fn step(ui: &mut egui::Ui, menu: &mut Menu<'_>, command: Command, is_back: bool) {
     let what = (menu.step)(is_back);
     let label = text::menu::step(&command.label(), what.as_deref());
@@ -307,7 +308,7 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     });
 }
 
-/// What a frame may take: 60, 30, 15 and 5 per second.
+/// Time budgets of a frame, in ms: 60, 30, 15 and 5 frames per second.
 const FRAME_MS: [(Option<f64>, &str); 5] = [
     (None, text::menu::AUTOMATIC),
     (Some(16.0), text::menu::SMOOTH),

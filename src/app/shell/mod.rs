@@ -1,4 +1,4 @@
-//! What holds the window together: picture, menu, history, session, messages, the balance that is kept.
+//! Shell of the window: picture, menu, status bar, history, session, messages and automatic balance.
 
 mod easing;
 pub(super) mod execute;

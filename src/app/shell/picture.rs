@@ -1,4 +1,4 @@
-//! The middle of the window: the picture, pixel for pixel, and the mouse on it.
+//! Central picture of the window, pixel for pixel, with its overlays and mouse input.
 
 use eframe::egui::{self, Rect, Role, Sense, Shape, WidgetInfo, pos2};
 
@@ -25,54 +25,54 @@ use crate::gpu::GpuError;
 use crate::model::auto::Outline;
 use crate::model::{ImageSpec, Settings};
 
-/// What the picture is shown with.
+/// Inputs of the picture: the state that it shows, and the values that the mouse changes.
 pub(crate) struct PictureInputs<'a> {
-    /// The look; camera and lights may be changed by the mouse.
+    /// Settings of the look; the mouse may change camera and lights.
     pub settings: &'a mut Settings,
-    /// What the volume was opened with.
+    /// Settings of the first look, to which resets go back.
     pub defaults: &'a Settings,
-    /// The renderer's side.
+    /// Render worker with its pictures.
     pub viewport: &'a mut Viewport,
-    /// The handles of the lights.
+    /// Handles of the lights in the picture.
     pub handles: &'a mut LightHandles,
-    /// The handles of the crop box and the clip plane.
+    /// Handles of the crop box and the clip plane.
     pub cut_handles: &'a mut CutHandles,
-    /// The light whose handle is marked.
+    /// Index of the light whose handle is highlighted.
     pub selected_light: &'a mut usize,
-    /// Two looks in one picture.
+    /// Comparison of two looks in one picture.
     pub compare: &'a mut Compare,
-    /// Chips of the lights, box, scale bar and cube.
+    /// Overlay of light chips, bounding box, scale bar and orientation cube.
     pub overlay: Overlay,
-    /// What is under the pointer.
+    /// Probe of the sample under the pointer.
     pub probe: &'a mut LightProbe,
-    /// How the eye goes round.
+    /// State of the current camera orbit.
     pub orbit: &'a mut Orbit,
-    /// What is shown on the way from view to view.
+    /// Animated transition between two views.
     pub turning: &'a mut Turning,
-    /// Where the object ends, if that is known.
+    /// Outline of the object, if it is known.
     pub outline: Option<&'a Outline>,
-    /// The picture that would be exported, while somebody is asked.
+    /// Size and annotations of the picture to export, while the export dialog is open.
     pub shot: Option<ImageSpec>,
-    /// What would be written over it.
+    /// Annotations that would be drawn over the exported picture.
     pub export_marks: &'a mut ExportMarks,
-    /// Cuts through the data, and their cursor.
+    /// Window of orthogonal slices with its cursor.
     pub slices: &'a mut Slices,
-    /// What the first picture says.
+    /// Hints over the picture on the first use of the program.
     pub hints: &'a mut Hints,
-    /// What is mostly looked for in a CT.
+    /// Row of common CT presets.
     pub ct_looks: &'a mut CtLooks,
-    /// The open volume.
+    /// Facts about the open volume.
     pub volume: Option<&'a VolumeFacts>,
-    /// What is known of the renderer's work.
+    /// Statistics and state of the renderer.
     pub facts: &'a Facts,
-    /// What the user asks for.
+    /// Queue of the commands that the user issues.
     pub commands: &'a mut Vec<Command>,
 }
 
-/// Points at the edge of the picture that are the panels' borders.
+/// Width of the strip at the picture's edge that belongs to the panel borders, in points.
 const BORDER: f32 = 4.0;
 
-/// Shows the picture and everything that is done with the mouse on it.
+/// Shows the picture with its overlays, and handles the mouse on it.
 pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Result<(), GpuError>) {
     let PictureInputs {
         settings,
@@ -99,14 +99,14 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
     let whole = Canvas::within(ui.available_rect_before_wrap(), ui.pixels_per_point());
     ui.allocate_rect(whole.rect, Sense::hover());
     let canvas = match shot {
-        // What is seen is what would be exported.
+        // Export preview, in the aspect ratio of the exported picture.
         Some(ImageSpec { size: [width, height], .. }) => {
             ui.painter().rect_filled(whole.rect, 0.0, ui.visuals().extreme_bg_color);
             whole.of_shape(f64::from(width) / f64::from(height.max(1)), ui.pixels_per_point())
         }
         None => whole,
     };
-    // The borders of panels are taken from both of their sides.
+    // The resize handles of panels extend into the picture.
     let inside = canvas.rect.shrink(BORDER);
     let mut response = ui.interact(inside, ui.scope_id().with("picture"), Sense::click_and_drag());
     response.rect = canvas.rect;
@@ -124,7 +124,7 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
         settings,
         *selected_light,
         !(handles.takes_wheel || cut_handles.takes_wheel),
-        // Labels have no window of values.
+        // Label maps have no window and level.
         viewport.dataset().map(|dataset| dataset.volume().shown_range()).filter(|_| is_by_value),
         (orbit, outline),
     );
@@ -143,7 +143,7 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
     {
         slices.point_at(found.index, dataset.volume().dims());
     }
-    // Painted first, filled in when the lights have been moved: no frame of delay.
+    // Placeholder shapes, filled in after the lights have been moved: no frame of delay.
     let places = [(); 2].map(|()| ui.painter().add(Shape::Noop));
     let moving =
         ui.ctx().animate_bool_with_time(ui.scope_id().with("box"), response.dragged(), theme::FADE_S);
@@ -158,12 +158,12 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
     } else {
         handles.leave();
     }
-    // Two looks have words of their own at the top and at the bottom.
+    // A comparison has captions at the top and at the bottom.
     let body = is_anatomical.then(|| compare.beside_words(ui, canvas.rect));
     let chips =
         overlay.on.then(|| light_chips::show(ui, canvas.rect, settings, selected_light, facts, commands));
     if let Some(shot) = &shot {
-        // As it would be exported: with the marks of that picture, and none of the window.
+        // Export preview: with the annotations of the exported picture, and without the window's overlays.
         if let Some(dataset) = viewport.dataset().filter(|_| is_one_view) {
             export_marks.show(ui, canvas.rect, shot, settings, dataset.volume());
         }
@@ -173,7 +173,7 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
         if let Some(view) = overlay.show(ui, canvas.rect, &settings.camera, scale, body) {
             commands.push(Command::LookFrom(view));
         }
-        // The first hints of all lie there.
+        // The hints of the first use are in the same place.
         if overlay.on && !hints.on {
             ct_looks.show(ui, canvas.rect, settings, volume, commands);
         }
@@ -187,7 +187,7 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
         nothing_seen::show(ui, canvas.rect, settings, defaults, dataset.volume(), facts);
     }
     settings.sanitise();
-    // Until the volume is there that the settings are for, the picture stays.
+    // The old picture stays until the volume has been corrected as the settings say.
     let is_correcting =
         viewport.dataset().is_some_and(|dataset| *dataset.volume().corrections() != settings.volume);
     let result = if canvas.size.contains(&0) || is_correcting {
@@ -212,10 +212,10 @@ pub(crate) fn show(ui: &mut egui::Ui, inputs: PictureInputs<'_>) -> (Canvas, Res
     (canvas, result)
 }
 
-/// The part of the picture for letters of orientation, of which the upper one stands in the middle: below the chips of the
-/// lights where they reach that far.
+/// Returns the part of the picture for orientation letters, of which the upper one is centred: below the light chips
+/// where these reach the middle.
 fn beside_chips(body: Rect, chips: Option<Rect>) -> Rect {
-    /// Points to both sides of the middle, for two letters.
+    /// Half of the width that two letters need at the middle, in points.
     const LETTERS: f32 = 20.0;
     match chips {
         Some(chips) if chips.right() > body.center().x - LETTERS => {
@@ -227,7 +227,7 @@ fn beside_chips(body: Rect, chips: Option<Rect>) -> Rect {
 }
 
 impl App {
-    /// The picture.
+    /// Shows the picture in the middle of the window.
     pub(in crate::app) fn picture(&mut self, ui: &mut egui::Ui, facts: &Facts, commands: &mut Vec<Command>) {
         let outline = self.outline();
         let inputs = PictureInputs {
@@ -255,7 +255,7 @@ impl App {
         let shown = egui::CentralPanel::no_frame().show(ui, |ui| show(ui, inputs));
         let (canvas, result) = shown.inner;
         self.canvas = Some(canvas);
-        // At the top of all the room, away from a question that is asked beside a smaller picture.
+        // At the top of the whole central area, clear of a dialog beside a smaller picture.
         self.messages.notice(ui.ctx(), shown.response.rect);
         self.messages.list(ui.ctx());
         if let Err(err) = result {
@@ -264,7 +264,7 @@ impl App {
         self.follow_range();
     }
 
-    /// Editor and panels show the values that the picture does.
+    /// Updates the facts for editor and panels to the range of values that the picture shows.
     fn follow_range(&mut self) {
         if let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &mut self.volume)
             && dataset.volume().shown() != facts.shown

@@ -1,4 +1,4 @@
-//! The session file: what Ctrl+S writes, and what it does not overwrite.
+//! Session file of Ctrl+S, and its protection from being overwritten.
 
 use std::path::{Path, PathBuf};
 
@@ -8,39 +8,39 @@ use crate::app::text;
 use crate::app::windows::files;
 use crate::model::{Record, SCHEMA, Settings, VolumeRecord};
 
-/// A file that the look is saved to.
+/// Session file to which the look is saved.
 #[derive(Debug)]
 pub(crate) struct Session {
     path: PathBuf,
-    /// What it says that this version does not know, which is written again.
+    /// Fields of the file that this version does not know; they are written back.
     unknown: Value,
-    /// Why it is not overwritten.
+    /// Reason why the file must not be overwritten, if any.
     protected: Option<&'static str>,
 }
 
 impl Session {
-    /// A file that was named when the program was started: what is there has to be read first.
+    /// Creates a session named on the command line; an existing file is protected until it has been read.
     pub(crate) fn named(path: PathBuf) -> Self {
         let protected = path.symlink_metadata().is_ok().then_some(text::memory::NOT_READ_YET);
         Self { path, unknown: Value::Null, protected }
     }
 
-    /// A file that was just written.
+    /// Creates the session of a file that was just written.
     fn written(path: &Path) -> Self {
         Self { path: path.to_owned(), unknown: Value::Null, protected: None }
     }
 
-    /// Where it is.
+    /// Path of the session file.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Where it is and why it must stay as it is, if it must.
+    /// Path of the file and the reason for its protection, if it is protected.
     pub(crate) fn protection(&self) -> Option<(&Path, &'static str)> {
         Some((&self.path, self.protected?))
     }
 
-    /// What was found there.
+    /// Decides on the protection by the record found in the file, and keeps its unknown fields.
     pub(crate) fn found(&mut self, record: Option<&Record>) {
         let Some(record) = record else {
             self.protected = Some(text::memory::NO_SESSION);
@@ -56,12 +56,12 @@ impl Session {
         };
     }
 
-    /// A record was read there, but cannot be laid over the settings.
+    /// Protects a file whose record cannot be applied to the settings.
     pub(crate) fn not_understood(&mut self) {
         self.protected = Some(text::memory::NOT_UNDERSTOOD);
     }
 
-    /// Writes a look to a file: over the session itself with what that says beside the settings.
+    /// Writes a look to a file. Over the session itself, its unknown fields are preserved.
     pub(crate) fn save(
         session: &mut Option<Self>,
         path: &Path,

@@ -1,4 +1,4 @@
-//! The status bar: what the user waits for, what was undone, and behind a click what pictures cost.
+//! Status bar: progress of picture and tasks, the last undo step, and render statistics behind a button.
 
 use std::path::Path;
 
@@ -14,40 +14,40 @@ use crate::app::windows::export::Unseen;
 use crate::app::worker::loader::LoadProgress;
 use crate::data::plain;
 
-/// Characters of a path in the bar: more than the widest screen shows.
+/// Maximum number of characters of a path in the bar: more than the widest screen shows.
 const LONGEST_PATH: usize = 500;
 
-/// Points of the last step back or forward: a name of a light may be long.
+/// Maximum width of the last undo step, in points: names of lights may be long.
 const LONGEST_STEP: f32 = 260.0;
 
-/// Points for the buttons at the right of the bar.
+/// Width reserved for the buttons at the right end of the bar, in points.
 const BUTTONS: f32 = 200.0;
 
-/// Work that can be cancelled in the bar.
+/// Tasks that can be cancelled in the bar.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Busy<'a> {
-    /// The volume that is being opened.
+    /// Progress of the volume that is being opened.
     pub opening: Option<LoadProgress<'a>>,
-    /// Another file that is being read.
+    /// Path of another file that is being read.
     pub reading: Option<&'a Path>,
-    /// The export whose window is closed.
+    /// Progress of the export, while its window is closed.
     pub exporting: Option<Unseen>,
 }
 
-/// What the status bar shows.
+/// Contents of the status bar.
 #[derive(Clone, Copy)]
 pub(crate) struct Status<'a> {
-    /// What is known of the renderer's work.
+    /// Statistics and state of the renderer.
     pub facts: &'a Facts,
-    /// Work that can be cancelled.
+    /// Tasks in progress that can be cancelled.
     pub busy: Busy<'a>,
-    /// What else is being made, and is waited for.
+    /// Name of another task in progress, such as placing lights.
     pub making: Option<&'static str>,
-    /// The last step back or forward.
+    /// Description of the last undo or redo.
     pub went: Option<&'a str>,
 }
 
-/// Shows the bar.
+/// Shows the bar at the bottom of the window.
 pub(crate) fn show(
     ui: &mut egui::Ui,
     status: Status<'_>,
@@ -96,12 +96,12 @@ pub(crate) fn show(
     });
 }
 
-/// How far a volume is that is being opened.
+/// Shows the progress of a volume that is being opened.
 fn progress_of_opening(ui: &mut egui::Ui, opening: &LoadProgress<'_>, commands: &mut Vec<Command>) {
     let &LoadProgress { source, reading: _, phase, fraction, bytes } = opening;
     match fraction {
         Some(share) => ui.add(ProgressBar::new(share).desired_width(120.0).desired_height(8.0)),
-        // A bar that stays empty looks stuck.
+        // A spinner, since an empty progress bar looks stuck.
         None => ui.spinner(),
     };
     let words = text::status::opening(phase, bytes, &plain(&source.to_string_lossy(), LONGEST_PATH));
@@ -111,17 +111,17 @@ fn progress_of_opening(ui: &mut egui::Ui, opening: &LoadProgress<'_>, commands: 
     cancel(ui, commands);
 }
 
-/// The button that ends reading and opening.
+/// Shows the button that cancels reading and opening.
 fn cancel(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     if ui.small_button(&*Command::CancelOpening.label()).clicked() {
         commands.push(Command::CancelOpening);
     }
 }
 
-/// How far an export is, whose window may be closed.
+/// Shows the progress of an export whose window may be closed.
 fn export(ui: &mut egui::Ui, Unseen { done, total, left }: Unseen, commands: &mut Vec<Command>) {
     ui.separator();
-    // First, so that it stays where it is while pictures are counted.
+    // First, so that the button does not move while the count changes.
     if ui.small_button(text::common::CANCEL).clicked() {
         commands.push(Command::CancelExport);
     }
@@ -138,7 +138,7 @@ fn export(ui: &mut egui::Ui, Unseen { done, total, left }: Unseen, commands: &mu
     }
 }
 
-/// The button behind which it says how fast pictures are made, with how much memory, and on what.
+/// Shows the button with a popup of statistics: render times, memory and graphics device.
 fn figures(ui: &mut egui::Ui, facts: &Facts) {
     let named = text::status::PERFORMANCE;
     let button = ui.small_button(named.name);
@@ -165,7 +165,7 @@ fn figures(ui: &mut egui::Ui, facts: &Facts) {
     button.on_hover_text(named.tip);
 }
 
-/// What is on screen, or what it waits for.
+/// Shows the state of the picture, or the task in progress.
 fn doing(ui: &mut egui::Ui, doing: Doing, making: Option<&'static str>) {
     match (doing, making) {
         (Doing::Refining(what, share), _) => {

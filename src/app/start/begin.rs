@@ -1,4 +1,4 @@
-//! How a window begins: with nothing, and with the volume and the look that it was started with.
+//! Start of a window: construction of an empty one, and opening of the volume and look that were named.
 
 use std::path::PathBuf;
 
@@ -55,11 +55,11 @@ use crate::fault::{self, Count, Fault, Place, may_panic};
 use crate::gpu::{Context, GpuError, WindowPainter};
 use crate::model::{Quality, Settings};
 
-/// Frames of all windows, for faults on purpose.
+/// Counter of the frames of all windows, for fault injection.
 static FRAMES: Count = Count::new();
 
 impl App {
-    /// Starts in a window and begins to open the first volume.
+    /// Starts the program in a window, and begins to open the first volume.
     ///
     /// # Errors
     /// When the window's device cannot be used.
@@ -67,7 +67,7 @@ impl App {
         Self::begin(cc, options, Legacy::default())
     }
 
-    /// As [`Self::new`]; what another window needs to take this one's place goes to `legacy`.
+    /// Starts as [`Self::new`] does; the state for a successor window is left in `legacy`.
     pub(in crate::app) fn begin(
         cc: &eframe::CreationContext<'_>,
         options: Options,
@@ -96,8 +96,8 @@ impl App {
         Ok(app)
     }
 
-    /// A window after several starts have failed: without the file and the session that were named, without what the
-    /// driver has kept of pipelines, and with the least work for it.
+    /// Starts safely after several failed starts: without the file and the session that were named, without the
+    /// pipeline cache, and with the least work for the driver.
     fn begin_safely(
         cc: &eframe::CreationContext<'_>,
         storage: Option<PathBuf>,
@@ -120,7 +120,7 @@ impl App {
         Ok(app)
     }
 
-    /// A window of nothing yet.
+    /// Builds an empty window without a volume.
     pub(in crate::app) fn build(
         cc: &eframe::CreationContext<'_>,
         load: LoadOptions,
@@ -130,7 +130,7 @@ impl App {
     ) -> Result<Self, AppError> {
         let no_wgpu = || GpuError::Refused(text::messages::NO_DEVICE.to_owned());
         let paint = cc.wgpu_render_state.clone().ok_or_else(no_wgpu)?;
-        // The window's own device draws the window alone: pictures are made beside it.
+        // The window's own device draws only the window: pictures are rendered on a second device.
         let window = WindowPainter::new(&paint.device, &paint.queue, paint.target_format)?;
         let window_context = Context::new(&paint.adapter, paint.device, paint.queue)?;
         let context = window_context.sibling()?;
@@ -208,7 +208,7 @@ impl App {
         })
     }
 
-    /// Does to the window what `--fault` asks for.
+    /// Injects the faults that `--fault` asks for.
     pub(in crate::app) fn fail_on_purpose(&self) {
         may_panic(Place::Window);
         std::thread::sleep(fault::frame_delay());

@@ -1,4 +1,4 @@
-//! What goes from a window whose graphics device was lost into the one that takes its place.
+//! State that a window hands over to its successor after the loss of its graphics device.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -25,7 +25,7 @@ use crate::data::Dataset;
 use crate::data::load::LoadOptions;
 use crate::model::{Quality, Settings};
 
-/// The look with its history, the volume in host memory, and the file that is saved to: everything that is the user's.
+/// State of the user's work: the look with its history, the volume in host memory, and the session file.
 #[derive(Debug)]
 pub(in crate::app) struct Carried {
     settings: Settings,
@@ -43,27 +43,27 @@ pub(in crate::app) struct Carried {
     keeps_look: bool,
     compare: Compare,
     selected_light: usize,
-    /// All that was said.
+    /// All messages since the start.
     messages: Messages,
     layout: Layout,
-    /// The probe is on.
+    /// True while the probe is on.
     probes: bool,
-    /// It goes on: it has a device of its own.
+    /// Running export, which goes on: it has a device of its own.
     export: Export,
-    /// What was being opened.
+    /// File that was being opened, with its options.
     opening: Option<(PathBuf, Reading)>,
     pending: Option<PendingLook>,
     pub load: LoadOptions,
     pub storage: Option<PathBuf>,
-    /// The user wants the adapter that is the CPU.
+    /// True if the user has chosen the software adapter (CPU).
     pub on_cpu: bool,
 }
 
-/// Where a window leaves it when it ends for another to take its place.
+/// Slot in which a window leaves its state for a successor.
 pub(in crate::app) type Legacy = Arc<Mutex<Option<Carried>>>;
 
 impl App {
-    /// The device is gone: this window ends without drawing anything further, and another takes its place.
+    /// Ends this window without drawing any further after the loss of its device; a successor takes its place.
     pub(in crate::app) fn end_for_another(&mut self, ctx: &egui::Context) {
         if !self.is_ending {
             log::warn!("{}", text::messages::DEVICE_LOST);
@@ -76,7 +76,7 @@ impl App {
         ctx.request_repaint();
     }
 
-    /// Leaves behind what the next window needs.
+    /// Leaves the state for the successor window.
     pub(in crate::app) fn leave(&mut self) {
         let opening =
             self.loader.progress().map(|progress| (progress.source.to_owned(), progress.reading.clone()));
@@ -109,7 +109,8 @@ impl App {
         *self.legacy.lock().unwrap_or_else(PoisonError::into_inner) = Some(carried);
     }
 
-    /// A window that goes on where another had to end. After losses in short succession the user is asked first.
+    /// Starts a successor window with the state of a window whose device was lost. After losses in short succession
+    /// (`asks`) the user is asked first.
     pub(in crate::app) fn go_on(
         cc: &eframe::CreationContext<'_>,
         carried: Carried,
@@ -166,7 +167,7 @@ impl App {
         Ok(app)
     }
 
-    /// Shows the volume again that an earlier window had open.
+    /// Shows the volume again that the earlier window had open.
     pub(in crate::app) fn show_again(&mut self, ctx: &egui::Context) {
         if let Some(dataset) = self.waiting.take()
             && let Err(err) = self.loader.show(dataset, ctx)
@@ -175,7 +176,7 @@ impl App {
         }
     }
 
-    /// The device was lost again soon: does what the user has chosen then.
+    /// Executes the user's answer after the device was lost again within a short time.
     pub(in crate::app) fn answer_loss(&mut self, answer: Answer, ctx: &egui::Context) {
         match answer {
             Answer::TryAgain => self.show_again(ctx),

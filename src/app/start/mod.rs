@@ -1,5 +1,4 @@
-//! How a window begins and ends: what it is opened with, and what goes into the next one when its graphics device is
-//! lost.
+//! Start and end of a window: its options, its construction, and the hand-over of its state after a lost device.
 
 mod begin;
 pub(super) mod carried;

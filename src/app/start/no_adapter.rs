@@ -1,5 +1,6 @@
-//! What somebody sees who has started the window from a menu, where no window can be opened: standard error goes
-//! nowhere there.
+//! Error message on the desktop when no window can be opened.
+//!
+//! A program that is started from a menu has no terminal for standard error.
 
 use std::ffi::OsString;
 use std::io::IsTerminal as _;
@@ -8,20 +9,20 @@ use std::time::Duration;
 
 use crate::app::text;
 
-/// How long the message holds the program: whoever has started it from a script after all is not held for ever.
+/// Maximum time for which the message blocks the program, in case it was started from a script.
 const LONGEST: Duration = Duration::from_mins(1);
 
-/// Where a program was started.
+/// Environment in which the program was started.
 #[derive(Debug, Clone, Copy)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a fact of its own")]
 struct Start {
-    /// The system shows messages through an X or a Wayland server, and elsewhere by itself.
+    /// True where messages need an X or Wayland server; other systems show errors without one.
     has_servers: bool,
-    /// An X server is named.
+    /// True if the environment names an X server.
     has_x: bool,
-    /// A Wayland server is named.
+    /// True if the environment names a Wayland server.
     has_wayland: bool,
-    /// Standard error is read by somebody.
+    /// True if standard error is a terminal.
     says_on_terminal: bool,
 }
 
@@ -36,14 +37,14 @@ impl Start {
         }
     }
 
-    /// Whether there is a desktop to show a message on, and nobody would see it otherwise.
+    /// Returns true if there is a desktop for the message, and no terminal that shows the error.
     fn wants_message(self) -> bool {
         self.has_servers && (self.has_x || self.has_wayland) && !self.says_on_terminal
     }
 }
 
-/// Shows on the desktop why no window opens, if nobody would read it elsewhere, and waits until it has been seen.
-/// Where the desktop has nothing that shows messages, nothing happens.
+/// Shows the reason on the desktop why no window opens, if there is no terminal, and waits until the message is
+/// closed. Does nothing where the desktop cannot show messages.
 pub fn show_on_desktop(why: &str) {
     if !Start::now().wants_message() {
         return;
@@ -55,7 +56,7 @@ pub fn show_on_desktop(why: &str) {
     let (seen, until_seen) = mpsc::channel();
     let shown = std::thread::Builder::new().name("message".to_owned()).spawn(move || {
         message.show();
-        // Nobody waits any more when it has taken too long.
+        // The receiver is gone if this has taken too long.
         seen.send(()).ok();
     });
     if shown.is_ok() {

@@ -1,4 +1,4 @@
-//! Opens windows, one after another where graphics devices are lost.
+//! Main loop of the window: after the loss of a graphics device, a successor window is opened.
 
 use std::path::PathBuf;
 use std::sync::{Arc, PoisonError};
@@ -14,22 +14,23 @@ use crate::app::memory::{check_window_state, write_last_words};
 use crate::app::{App, text};
 use crate::gpu::{check_room_for_drivers, device_descriptor};
 
-/// Names our window to the desktop, and the folder in which we keep things.
+/// Application identifier of the window for the desktop, and name of the storage folder.
 const APP_ID: &str = "chiaroscuro";
 
-/// The folder in which this user's system keeps what programs remember.
+/// Returns the storage folder of the program for this user.
 pub fn storage_folder() -> Option<PathBuf> {
     eframe::storage_dir(APP_ID)
 }
 
-/// How the window's device is opened: with the limits and features that the renderer can use.
+/// Returns the set-up of the window's device: the limits and features that the renderer can use.
 pub fn wgpu_setup() -> eframe::egui_wgpu::WgpuSetupCreateNew {
     let mut setup = eframe::egui_wgpu::WgpuSetupCreateNew::without_display_handle();
     setup.device_descriptor = Arc::new(device_descriptor);
     setup
 }
 
-/// Opens the window and returns when it is closed. When its graphics device is lost, another takes its place.
+/// Opens the window and returns when it is closed. After the loss of its graphics device, a successor takes its
+/// place.
 ///
 /// # Errors
 /// When there is no display or no usable graphics adapter.
@@ -55,17 +56,17 @@ pub fn run(options: Options) -> Result<(), AppError> {
         };
         losses.retain(|when| when.elapsed() < SUCCESSION);
         losses.push(Instant::now());
-        // Whoever has chosen how to go on is not asked again.
+        // A user who has chosen the CPU is not asked again.
         let (asks, on_cpu) = (losses.len() > 1 && !carried.on_cpu, carried.on_cpu);
         let theirs = Legacy::clone(&legacy);
         open_window(on_cpu, move |cc| App::go_on(cc, carried, theirs, asks))?;
     }
 }
 
-/// A device that is lost twice within this time will be lost again.
+/// Interval within which a second loss means that the device will be lost again.
 const SUCCESSION: Duration = Duration::from_mins(1);
 
-/// Opens a window, perhaps on the adapter that is the CPU, and returns when it is closed.
+/// Opens a window, on the software adapter if `on_cpu`, and returns when it is closed.
 fn open_window(
     on_cpu: bool,
     begin: impl FnOnce(&eframe::CreationContext<'_>) -> Result<App, AppError>,
@@ -85,7 +86,7 @@ fn open_window(
     }
     let wgpu_options =
         eframe::egui_wgpu::WgpuConfiguration { wgpu_setup: setup.into(), ..Default::default() };
-    // Without dithering the picture reaches the screen byte for byte.
+    // Without dithering, the picture reaches the screen byte for byte.
     let native = eframe::NativeOptions { viewport, wgpu_options, dithering: false, ..Default::default() };
     let start = |cc: &eframe::CreationContext<'_>| Ok(Box::new(begin(cc)?) as Box<dyn eframe::App>);
     eframe::run_native(text::opening::PROGRAM, native, Box::new(start))?;

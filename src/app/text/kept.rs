@@ -1,4 +1,4 @@
-//! The strip of saved views and looks.
+//! Texts of the strip of saved views and looks.
 
 use super::shell::commands::{recall_view_keys, store_view_keys};
 use super::{Named, named};
@@ -23,49 +23,49 @@ pub(crate) const REMOVE: Named = named("Remove", "Delete it from the list");
 pub(crate) const DIGIT: &str = "Key";
 pub(crate) const NO_ROOM: &str = "There is no room for it: at most 32 views and looks are saved, and a table of a thousand labels is too much for one";
 
-/// What a small picture is called.
+/// Accessible name of a thumbnail in the strip.
 pub(crate) fn go_to(name: &str) -> String {
     format!("Go to {name}")
 }
 
-/// What a click does.
+/// Tooltip of a thumbnail: name, effect of a click and its key.
 pub(crate) fn tip(name: &str, is_look: bool, digit: Option<u8>) -> String {
     let what = if is_look { "Take this look; the view stays" } else { "Look from here" };
     let key = digit.map_or_else(String::new, |digit| format!(" ({})", recall_view_keys(digit)));
     format!("{name}\n{what}{key}\nDrag to another place; right click for more")
 }
 
-/// The digit of a view or look.
+/// Keyboard shortcut of a view or look with a digit.
 pub(crate) fn key(digit: u8) -> String {
     recall_view_keys(digit)
 }
 
-/// The name of a view that somebody keeps, by its number.
+/// Default name of the saved view with this number.
 pub(crate) fn view_name(number: usize) -> String {
     format!("View {number}")
 }
 
-/// The name of a look that somebody keeps, by its number.
+/// Default name of the saved look with this number.
 pub(crate) fn look_name(number: usize) -> String {
     format!("Look {number}")
 }
 
-/// A view or look is kept.
+/// Message after a view or look was saved.
 pub(crate) fn kept(name: &str) -> String {
     format!("Saved {name} in the strip below the picture")
 }
 
-/// A view is kept under a digit.
+/// Message after a view was saved under a digit.
 pub(crate) fn view_kept(digit: u8) -> String {
     format!("Saved view {digit}: {} looks that way again", recall_view_keys(digit))
 }
 
-/// Nothing is kept under a digit.
+/// Message when a digit has no saved view.
 pub(crate) fn nothing_under(digit: u8) -> String {
     format!("Nothing is saved under {digit}: {} saves a view there", store_view_keys(digit))
 }
 
-/// How many pictures are still made.
+/// Number of thumbnails that remain to be drawn.
 pub(crate) fn making(left: usize) -> String {
     format!("{left} to draw")
 }

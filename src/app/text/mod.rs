@@ -1,8 +1,9 @@
-//! What the window says, in one place: for whoever reads it all at once, corrects or translates it.
+//! All texts of the window in one place, for proofreading and translation.
 //!
-//! One file per part of the window. Plain texts are constants; texts with figures in them are functions,
-//! because other languages put the figures elsewhere. The look of a text stays where it is shown. The names of
-//! presets, colour maps, views and sets of lights are with them in `src/model`; errors word themselves.
+//! One file per part of the window. Plain texts are constants; texts with figures in them are functions, because
+//! other languages put the figures elsewhere. Fonts and colours are chosen where a text is shown. The names of
+//! presets, colour maps, views and light rigs are with these in `src/model`; errors have their messages where they
+//! are defined.
 
 pub(super) mod common;
 pub(super) mod dock;
@@ -25,16 +26,16 @@ pub(super) use self::windows::{
     chooser, contact_sheet, export, files, foreign_path, help, light_volume, palette, raw, roomy, slices,
 };
 
-/// A control's name, and its tip.
+/// Name of a control, with its tooltip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Named {
-    /// Beside the control or on it; also what screen readers call it.
+    /// Label beside or on the control; also its accessible name for screen readers.
     pub name: &'static str,
-    /// A sentence without a full stop.
+    /// Tooltip: a sentence without a full stop.
     pub tip: &'static str,
 }
 
-/// A name and its tip.
+/// Makes a [`Named`] in a constant expression.
 const fn named(name: &'static str, tip: &'static str) -> Named {
     Named { name, tip }
 }

@@ -1,6 +1,6 @@
-//! Work on other threads that ends badly.
+//! Error texts of background threads that fail.
 
-/// It ended and said nothing.
+/// Error of a thread that ended without a result.
 pub(crate) const NO_RESULT: &str = "the thread ended without a result";
-/// What stands for the message of a panic that has none.
+/// Text in place of the message of a panic without one.
 pub(crate) const NO_REASON: &str = "for no stated reason";

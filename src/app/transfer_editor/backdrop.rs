@@ -1,7 +1,7 @@
-//! What lies behind the curves of the plot: a checkerboard, the histogram, and the colours under the eye's curve.
+//! Backdrop of the plot, behind its curves: a checkerboard, the histogram, and the colours under the eye's curve.
 //!
-//! It is composed into one picture, when anything of it changes: painted as shapes, three layers over an eighth of
-//! the window, it took a software driver more than the whole rest of the window.
+//! It is composed into one picture whenever one of its inputs changes: painted as shapes, three layers over an eighth
+//! of the window, it took a software driver longer than the rest of the window.
 
 use eframe::egui::{Color32, Rgba, Shape, pos2};
 
@@ -13,25 +13,25 @@ use crate::data::ValueRange;
 use crate::gpu::{WindowPainter, WindowPicture};
 use crate::model::TransferFunction;
 
-/// Even where nearly nothing is opaque the colour can be told.
+/// Smallest opacity of the fill under the curve, so that its colour is seen even where it is nearly transparent.
 const LEAST_FILL: f32 = 0.25;
 
-/// Bars of a histogram.
+/// Bars of the histogram, with equal widths.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Bars {
-    /// The values that they share evenly.
+    /// Values that the bars cover.
     pub range: ValueRange,
-    /// Voxels in each.
+    /// Number of voxels in each bar.
     pub counts: Vec<u64>,
-    /// Rare values are raised so that they can be seen.
+    /// True for logarithmic heights, so that rare values are visible.
     pub log: bool,
 }
 
 impl Bars {
-    /// Heights as shares of the plot's.
+    /// Heights of the bars, as shares of the plot's height.
     fn heights(&self) -> Vec<f32> {
         let height = |count: u64| if self.log { (count as f64).ln_1p() } else { count as f64 };
-        // The background would dwarf everything else on a linear scale.
+        // The bin of the background would dwarf all others on a linear scale.
         let mut sorted = self.counts.clone();
         sorted.sort_unstable();
         let columns = sorted.len();
@@ -40,7 +40,7 @@ impl Bars {
         self.counts.iter().map(|&count| (height(count) / full).min(1.0) as f32).collect()
     }
 
-    /// The bar of a value.
+    /// Index of the bar that contains a value.
     fn at(&self, value: f64) -> Option<usize> {
         let span = if self.range.high > self.range.low { self.range.high - self.range.low } else { 1.0 };
         let place = ((value - self.range.low) / span * self.counts.len() as f64).floor();
@@ -48,7 +48,7 @@ impl Bars {
     }
 }
 
-/// What it is composed from.
+/// Inputs of the composed picture, compared to detect changes.
 #[derive(Debug, Clone, PartialEq)]
 struct Key {
     canvas: Canvas,
@@ -57,7 +57,7 @@ struct Key {
     function: TransferFunction,
 }
 
-/// The picture as it was composed last.
+/// Cached picture of the backdrop, with the inputs that it was composed from.
 #[derive(Debug)]
 pub(super) struct Backdrop {
     window: WindowPainter,
@@ -65,12 +65,12 @@ pub(super) struct Backdrop {
 }
 
 impl Backdrop {
-    /// For a window.
+    /// Creates an empty backdrop for a window.
     pub(super) fn new(window: WindowPainter) -> Self {
         Self { window, composed: None }
     }
 
-    /// What is to be painted first.
+    /// Returns the shape to paint first, below the curves; recomposes the picture if its inputs have changed.
     pub(super) fn shape(
         &mut self,
         axes: &Axes,
@@ -94,12 +94,12 @@ impl Backdrop {
     }
 }
 
-/// Pixels from the upper left, row by row: sRGB, four bytes each.
+/// Composes the backdrop: pixels from the upper left, row by row; sRGB, four bytes each.
 fn compose(key: &Key, pixels_per_point: f32) -> Vec<u8> {
     let Key { canvas, axes, bars, function } = key;
     let [width, height] = canvas.size.map(|n| n as usize);
     let heights = bars.heights();
-    // Middles of pixels, in points.
+    // Centres of pixels, in points.
     let point = |pixel: usize| (pixel as f32 + 0.5) / pixels_per_point;
     let floor = axes.position(axes.range.low, 0.0).y;
     let tall = floor - axes.position(axes.range.low, 1.0).y;

@@ -1,4 +1,4 @@
-//! What is typed about selected points: value, opacity, colour, and the way to the next point.
+//! Fields for the selected control points: value, opacity, colour, and the interpolation to the next point.
 
 use eframe::egui::{self, DragValue, Slider, Ui};
 
@@ -13,26 +13,26 @@ use crate::model::{
     oklab_from_linear, srgb_from_linear,
 };
 
-/// Ways from a point to the next.
+/// Interpolations from a point to the next, with their names.
 const WAYS: [(Easing, &str); 3] = [
     (Easing::Linear, text::transfer::STRAIGHT),
     (Easing::Smooth, text::transfer::SMOOTH),
     (Easing::Step, text::transfer::STEP),
 ];
 
-/// The most colourful colours of displays have about this chroma.
+/// Largest chroma of the slider (Oklab); the most saturated colours of displays have about this.
 const MOST_CHROMA: f64 = 0.33;
 
-/// The values of a volume.
+/// Value ranges of the fields of a volume's control points.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Values {
-    /// What the axis spans.
+    /// Values that the axis of the plot spans.
     pub span: ValueRange,
-    /// Those to which points can be moved.
+    /// Values within which points can be moved.
     pub limits: ValueRange,
 }
 
-/// Fields of one point, or of several at once. `true`: they are to be removed.
+/// Shows the fields of one point, or of several at once; returns true if the points are to be removed.
 pub(super) fn points(
     ui: &mut Ui,
     function: &mut TransferFunction,
@@ -60,7 +60,7 @@ pub(super) fn points(
         perceived(ui, &mut point.color);
     }
     way(ui, &mut point.easing);
-    // What was typed holds for all; each keeps its own value.
+    // Edited fields apply to all selected points; each keeps its own value.
     for &index in selected {
         let other = &mut function.points[index];
         if point.opacity != before.opacity {
@@ -77,7 +77,7 @@ pub(super) fn points(
     ui.add_enabled(function.points.len() > 1, egui::Button::new(text::transfer::REMOVE)).clicked()
 }
 
-/// Lightness, chroma and hue, for colours that are to be as light or as colourful as others.
+/// Sliders for lightness, chroma and hue (Oklab LCh), to match the lightness or saturation of other colours.
 fn perceived(ui: &mut Ui, srgb: &mut [f32; 3]) {
     let menu = frame::scrolling_menu(ui, text::transfer::AS_SEEN.name, |ui| {
         let linear = srgb.map(|c| linear_from_srgb(f64::from(c)));
@@ -92,7 +92,7 @@ fn perceived(ui: &mut Ui, srgb: &mut [f32; 3]) {
             ] {
                 ui.label(name);
                 let slider = Slider::new(value, 0.0..=most).suffix(unit).max_decimals(3);
-                // Showing a colour must not round it.
+                // Showing a colour must not round it; only edits are clamped.
                 let slider = slider.clamping(egui::SliderClamping::Edits);
                 changed |= ui.name_inputs(name, |ui| ui.add(slider)).changed();
                 ui.end_row();
@@ -118,7 +118,7 @@ fn way(ui: &mut Ui, easing: &mut Easing) {
     menu.response.on_hover_text(text::transfer::WAY_TIP);
 }
 
-/// The values between which a point can be moved.
+/// Values between which a point can be moved: its neighbours, or the ends of the range.
 fn neighbours(function: &TransferFunction, index: usize, range: ValueRange) -> (f64, f64) {
     let points: &[ControlPoint] = &function.points;
     let low = index.checked_sub(1).map_or(range.low, |before| points[before].value);

@@ -1,4 +1,4 @@
-//! Drawing a curve by hand.
+//! Freehand drawing of a transfer function curve.
 
 use eframe::egui::{self, CursorIcon, Event, Key, Modifiers, Pos2, Response, Stroke, Ui};
 
@@ -6,25 +6,25 @@ use super::plot::{self, Axes};
 use super::theme;
 use crate::model::TransferFunction;
 
-/// What is being drawn.
+/// State of freehand drawing between frames.
 #[derive(Debug, Default)]
 pub(super) struct Freehand {
-    /// The pointer draws instead of moving points.
+    /// True while the pointer draws instead of moving points.
     pub on: bool,
-    /// Value and opacity along the way of the hand.
+    /// Values and opacities along the current stroke.
     stroke: Vec<[f64; 2]>,
-    /// The curve before.
+    /// Curve before the current stroke.
     before: Option<TransferFunction>,
 }
 
-/// Places to which the pointer went in this frame, in points of the window.
+/// Positions of the pointer during this frame, in points of the window.
 fn passed(ui: &Ui) -> Vec<Pos2> {
     let to = |event: &Event| if let Event::PointerMoved(to) = event { Some(*to) } else { None };
     ui.input(|input| input.events.iter().filter_map(to).collect())
 }
 
 impl Freehand {
-    /// Draws while the pointer is held; Escape takes a stroke back, and then stops drawing.
+    /// Draws while the button is held; Escape reverts the current stroke, or else ends freehand drawing.
     pub(super) fn draw(
         &mut self,
         ui: &Ui,
@@ -36,7 +36,7 @@ impl Freehand {
             ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
         }
         if !(response.dragged() || response.drag_started() || response.drag_stopped()) {
-            // A stroke that was cut off, because the editor was hidden, is over.
+            // A stroke that was interrupted, because the editor was hidden, has ended.
             (self.before, self.stroke) = (None, Vec::new());
         }
         let painter = ui.painter_at(axes.area);
@@ -58,12 +58,12 @@ impl Freehand {
         if response.drag_started_by(egui::PointerButton::Primary) {
             self.before = Some(function.clone());
             self.stroke.clear();
-            // Where the button was pressed: a drag begins some points further.
+            // Position at which the button was pressed: a drag is reported only some points further on.
             let origin = ui.input(|input| input.pointer.press_origin()).map(|at| axes.values(at));
             self.stroke.extend(origin.map(|(value, opacity)| [value, opacity]));
         }
         if let (Some(before), Some(at)) = (&self.before, response.interact_pointer_pos()) {
-            // All the places that the hand has passed, of which a slow frame has many.
+            // All positions passed by the pointer; a slow frame has many.
             for at in passed(ui).into_iter().chain([at]) {
                 let (value, opacity) = axes.values(at);
                 if self.stroke.last() != Some(&[value, opacity]) {

@@ -1,4 +1,4 @@
-//! Table of the labels, in the place of the curve: what each looks like, a row each.
+//! Table of the labels of a segmentation, shown in place of the curve: one row for the look of each.
 
 use eframe::egui::{
     self, Align, Button, DragValue, Id, Layout, RichText, ScrollArea, TextEdit, Ui, Vec2, WidgetInfo,
@@ -10,26 +10,26 @@ use crate::app::common::volume_facts::{LabelRow, VolumeFacts};
 use crate::app::panels::controls::color;
 use crate::model::{LabelLook, LabelTable, MAX_NAME, Settings};
 
-/// Labels from which on there is a filter: fewer are seen at once.
+/// Number of labels from which on a filter is shown: fewer are visible at once.
 const FILTERED: usize = 7;
 
-/// Points of width of the columns: their headers fit, a number of six digits, and as many voxels as a large scan has.
+/// Widths of the columns, in points: enough for their headers, six-digit labels, and the voxel counts of large scans.
 const SHOW: f32 = 38.0;
 const COLOR: f32 = 48.0;
 const NUMBER: f32 = 56.0;
 const VOXELS: f32 = 84.0;
 const OPACITY: f32 = 62.0;
 
-/// Points of width of the names: what is left, between the shortest and the longest that are read at a glance.
+/// Range of the width of the name column, in points: the remaining width, limited to what is read at a glance.
 const NAMES: std::ops::RangeInclusive<f32> = 90.0..=320.0;
 
-/// Points between columns.
+/// Gap between two columns, in points.
 const GAP: f32 = 10.0;
 
-/// Points of width of the filter.
+/// Width of the filter field, in points.
 const FILTER: f32 = 180.0;
 
-/// Shows the table in the whole of `ui`.
+/// Shows the table of labels in the whole of `ui`.
 pub(super) fn show(ui: &mut Ui, settings: &mut Settings, volume: &VolumeFacts, commands: &mut Vec<Command>) {
     let mut gives_way = false;
     let listed = ui.horizontal(|ui| {
@@ -72,7 +72,7 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, volume: &VolumeFacts, c
     }
 }
 
-/// A place in a row, as wide as its column; right-aligned where numbers are.
+/// Shows one cell of a row, as wide as its column; numbers are right-aligned.
 fn cell<R>(ui: &mut Ui, width: f32, is_number: bool, add: impl FnOnce(&mut Ui) -> R) -> R {
     let size = Vec2::new(width, ui.spacing().interact_size.y);
     let layout =
@@ -84,7 +84,7 @@ fn cell<R>(ui: &mut Ui, width: f32, is_number: bool, add: impl FnOnce(&mut Ui) -
     shown.inner
 }
 
-/// What stands over the columns.
+/// Shows the header row with the column titles.
 fn header(ui: &mut Ui, name_width: f32) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = GAP;
@@ -104,7 +104,7 @@ fn header(ui: &mut Ui, name_width: f32) {
     });
 }
 
-/// The labels that the filter lets through. There is one where not all can be seen.
+/// Shows the filter if there are many labels, and returns the labels that match it.
 fn listed<'a>(ui: &mut Ui, table: &LabelTable, all: &'a [LabelRow]) -> Vec<&'a LabelRow> {
     if all.len() < FILTERED {
         return all.iter().collect();
@@ -115,7 +115,7 @@ fn listed<'a>(ui: &mut Ui, table: &LabelTable, all: &'a [LabelRow]) -> Vec<&'a L
     let field = TextEdit::singleline(&mut filter).hint_text(text::labels::FILTER_HINT).char_limit(MAX_NAME);
     let response = ui.add(field.desired_width(FILTER));
     name_text(&response, words.name);
-    // Which also takes the focus away.
+    // Escape also takes the focus away.
     if response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Escape)) {
         filter.clear();
     }
@@ -130,7 +130,7 @@ fn listed<'a>(ui: &mut Ui, table: &LabelTable, all: &'a [LabelRow]) -> Vec<&'a L
     all.iter().filter(is_wanted).collect()
 }
 
-/// What changes all of them.
+/// Shows the buttons that change all listed labels, and their count.
 fn tools(ui: &mut Ui, table: &mut LabelTable, listed: &[&LabelRow], all: usize) {
     for (words, visible) in [(text::labels::SHOW_ALL, true), (text::labels::HIDE_ALL, false)] {
         if ui.button(words.name).on_hover_text(words.tip).clicked() {
@@ -142,7 +142,7 @@ fn tools(ui: &mut Ui, table: &mut LabelTable, listed: &[&LabelRow], all: usize) 
     ui.weak(text::labels::count(listed.len(), all));
 }
 
-/// A label, on one line. Whether it is to be the only one.
+/// Shows one label in a row; returns true if only this label is to remain visible.
 fn row(ui: &mut Ui, table: &mut LabelTable, label: &LabelRow, name_width: f32) -> bool {
     let number = label.number;
     let before = table.look(label.stands_for).into_owned();
@@ -165,7 +165,7 @@ fn row(ui: &mut Ui, table: &mut LabelTable, label: &LabelRow, name_width: f32) -
         only = button.on_hover_text(format!("{}\n{facts}", text::labels::ONLY_TIP)).clicked();
         let mut name = label.name(table);
         let field = TextEdit::singleline(&mut name).char_limit(MAX_NAME).hint_text(text::labels::NAME_HINT);
-        // A field is wider than its text by its margin on both sides.
+        // A text field adds its margin on both sides to its text's width.
         let field = field.desired_width(name_width - 8.0);
         let response = cell(ui, name_width, false, |ui| ui.add_enabled(has_own_look, field));
         name_text(&response, &text::labels::name(number));
@@ -186,13 +186,13 @@ fn row(ui: &mut Ui, table: &mut LabelTable, label: &LabelRow, name_width: f32) -
     only
 }
 
-/// What screen readers call a field of text, instead of what stands in it while it is empty.
+/// Names a text field for screen readers, which would otherwise read its contents, empty or not.
 fn name_text(field: &egui::Response, name: &str) {
     let is_enabled = field.enabled();
     field.widget_info(|| WidgetInfo::labeled(egui::Role::TextInput, is_enabled, name));
 }
 
-/// Shows or hides a label. What looks so already needs no entry.
+/// Shows or hides a label; adds no table entry if its visibility is that already.
 fn set_visible(table: &mut LabelTable, number: i64, visible: bool) {
     if table.look(number).visible != visible {
         *table.entry(number) = LabelLook { visible, ..table.look(number).into_owned() };

@@ -1,4 +1,4 @@
-//! The chain between the curves of eye and light: closed while light meets what the eye sees.
+//! Link button between the curves of eye and light: a chain, closed while light uses the eye's curve.
 
 use eframe::egui::{self, Pos2, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, vec2};
 use std::f32::consts::{PI, TAU};
@@ -8,12 +8,12 @@ use crate::app::common::theme;
 use crate::app::panels::set_linked;
 use crate::model::Settings;
 
-/// Points of the button, of half a link's length without its round ends, and of those.
+/// Size of the button, half the straight length of a link, and the radius of its round ends, in points.
 const SIZE: Vec2 = Vec2::new(20.0, 18.0);
 const HALF: f32 = 2.0;
 const ROUND: f32 = 2.8;
 
-/// Shows it; a click links the curves or gives light one of its own.
+/// Shows the button; a click links the two curves, or gives light a curve of its own.
 pub(super) fn show(ui: &mut Ui, settings: &mut Settings) {
     let is_linked = settings.lighting.linked;
     let (rect, response) = ui.allocate_exact_size(SIZE, Sense::click());
@@ -26,7 +26,7 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings) {
     } else {
         ui.visuals().weak_text_color()
     };
-    // Links that hold each other, or have come apart.
+    // Closed links overlap; open ones are apart.
     let apart = if is_linked { 3.0 } else { 5.5 };
     for side in [-1.0, 1.0] {
         let middle = rect.center() + vec2(side * apart, 0.0);
@@ -38,7 +38,7 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings) {
     }
 }
 
-/// A link that lies on its side.
+/// Outline of one horizontal link around its centre.
 fn link(middle: Pos2) -> Vec<Pos2> {
     let half_circle = |from: f32, x: f32| {
         (0..=8).map(move |at| {

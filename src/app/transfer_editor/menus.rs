@@ -1,4 +1,4 @@
-//! Menus of the transfer function editor: colour maps, and what moves the whole curve.
+//! Menus of the transfer function editor: colour maps, shapes, and fields that transform the whole curve.
 
 use eframe::egui::{self, Color32, DragValue, Mesh, Rect, Response, Sense, Ui, vec2};
 
@@ -10,10 +10,10 @@ use crate::app::common::{frame, reveal, theme};
 use crate::data::ValueRange;
 use crate::model::{COLOR_MAPS, ColorMap, ControlPoint, Easing, Mixing, TransferFunction};
 
-/// Size of the strip that shows a colour map.
+/// Size of the swatch of a colour map, in points.
 const STRIP: egui::Vec2 = vec2(96.0, 14.0);
 
-/// Colour maps, with their colours.
+/// Menu of the colour maps, with swatches, and of transfer function files.
 pub(super) fn colors(ui: &mut Ui, function: &mut TransferFunction, commands: &mut Vec<Command>) {
     frame::scrolling_menu(ui, text::transfer::COLORS, |ui| {
         for (at, map) in COLOR_MAPS.iter().enumerate() {
@@ -69,12 +69,12 @@ fn strip(ui: &mut Ui, map: &ColorMap) {
     ui.painter().add(mesh);
 }
 
-/// Lets a control glow that was sought.
+/// Highlights a control for a moment if the user has searched for it.
 pub(super) fn found(ui: &Ui, named: Named, control: &Response) {
     reveal::glow(ui, text::transfer::TITLE, named.name, control.rect);
 }
 
-/// Moves the whole curve, or spreads it. The limits keep every point near the volume's values.
+/// Fields that move the whole curve, stretch it, or scale its opacity. Limits keep points near the volume's values.
 pub(super) fn whole_curve(ui: &mut Ui, function: &mut TransferFunction, range: ValueRange) {
     let (Some(&first), Some(&last)) = (function.points.first(), function.points.last()) else { return };
     let span = (range.high - range.low).max(1e-12);
@@ -84,7 +84,7 @@ pub(super) fn whole_curve(ui: &mut Ui, function: &mut TransferFunction, range: V
     let mut opacity = most;
     let label = ui.label(text::transfer::OPACITY.name);
     let field = DragValue::new(&mut opacity).speed(0.005).range(0.001..=1.0).fixed_decimals(3);
-    // What a file brought stays until somebody changes it.
+    // A value from a file stays until the user changes it.
     let field = field.clamp_existing_to_range(false);
     let field = ui.add_enabled(most > 0.0, field).labelled_by(label.id);
     found(ui, text::transfer::OPACITY, &field.on_hover_text(text::transfer::OPACITY.tip));
@@ -115,7 +115,7 @@ pub(super) fn whole_curve(ui: &mut Ui, function: &mut TransferFunction, range: V
     }
 }
 
-/// What changes the shape of the curve. `shown`: the values that the plot shows.
+/// Menu of changes to the curve's shape. `shown`: values that the plot shows.
 pub(super) fn shapes(ui: &mut Ui, function: &mut TransferFunction, volume: &VolumeFacts, shown: ShownValues) {
     frame::scrolling_menu(ui, text::transfer::SHAPE, |ui| {
         let clicked = |ui: &mut Ui, named: Named| ui.button(named.name).on_hover_text(named.tip).clicked();
@@ -131,8 +131,8 @@ pub(super) fn shapes(ui: &mut Ui, function: &mut TransferFunction, volume: &Volu
     });
 }
 
-/// Spreads the points over the values that occur: all but two hundredths of the voxels at either end, since most
-/// volumes have much that is empty.
+/// Stretches the points over the values that occur: without 2 % of the voxels at the low end, since most volumes have
+/// much empty space, and 0.2 % at the high end.
 fn fit(function: &mut TransferFunction, volume: &VolumeFacts) {
     let value = |share: f64| {
         volume.range.low + volume.histogram.percentile(share) * (volume.range.high - volume.range.low)
@@ -148,13 +148,13 @@ fn fit(function: &mut TransferFunction, volume: &VolumeFacts) {
     }
 }
 
-/// A smooth bump of opacity around the middle of the window that is shown.
+/// Adds a smooth bump of opacity in the middle of the shown values.
 fn add_bump(function: &mut TransferFunction, shown: ShownValues) {
     let (middle, width) = (f64::midpoint(shown.low, shown.high), (shown.high - shown.low) / 10.0);
     let (first, last) = (middle - 1.25 * width, middle + 1.25 * width);
     cut_out(function, first, last);
     let before = function.clone();
-    // A Gaussian, by its values at multiples of half its standard deviation.
+    // A Gaussian, sampled at multiples of half its standard deviation.
     for step in -4_i32..=4 {
         let at = f64::from(step) * 0.5;
         let point = before.point_at(middle + at * width * 0.5);
@@ -164,7 +164,7 @@ fn add_bump(function: &mut TransferFunction, shown: ShownValues) {
     }
 }
 
-/// A band of opacity with sharp ends around the middle of the window that is shown.
+/// Adds a band of constant opacity with sharp ends in the middle of the shown values.
 fn add_box(function: &mut TransferFunction, shown: ShownValues) {
     let (middle, half) = (f64::midpoint(shown.low, shown.high), (shown.high - shown.low) / 20.0);
     let first = cut_out(function, middle - half, middle + half);
@@ -173,8 +173,8 @@ fn add_box(function: &mut TransferFunction, shown: ShownValues) {
     function.points.insert(first + 1, inside);
 }
 
-/// Sets points on the curve at both ends of a band, and removes those in it: the rest stays as it is. Returns the
-/// index of the first end, from which it goes straight to the second.
+/// Cuts a band out of the curve: sets points on it at both ends of the band and removes those between. Returns the
+/// index of the first end, from which a straight line leads to the second.
 fn cut_out(function: &mut TransferFunction, low: f64, high: f64) -> usize {
     function.cut_at(high);
     function.cut_at(low);

@@ -1,7 +1,7 @@
-//! The transfer function editor: wide and low, values run horizontally and need room.
+//! Transfer function editor: wide and low, because values run horizontally and need room.
 //!
-//! Both curves share one plot: the eye's, filled with its colours, and the lighting one as a single
-//! amber line, dashed while it follows the eye's.
+//! Both curves share one plot: the eye's, filled with its colours, and the lighting curve as a single amber line,
+//! dashed while it is linked to the eye's.
 
 mod backdrop;
 mod fields;
@@ -32,13 +32,13 @@ use crate::data::ValueRange;
 use crate::gpu::WindowPainter;
 use crate::model::{Settings, TransferFunction};
 
-/// Which curve is edited.
+/// Curve that the editor edits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum Curve {
-    /// What the eye sees.
+    /// Transfer function that the eye sees.
     #[default]
     Eye,
-    /// What light meets.
+    /// Lighting curve: opacity for the light pass.
     Light,
 }
 
@@ -47,11 +47,11 @@ enum Curve {
 pub(super) struct TransferEditor {
     curve: Curve,
     selection: Selection,
-    /// The curve as it was left: the selection means its points.
+    /// Curve as the last frame left it; the selection refers to its points.
     left: TransferFunction,
-    /// Rare values are raised so that they can be seen.
+    /// True for a logarithmic histogram, so that rare values are visible.
     log_histogram: bool,
-    /// Values that are shown, if not all.
+    /// Range of values that the plot shows, if not all.
     zoom: Zoom,
     span: Span,
     backdrop: Backdrop,
@@ -60,7 +60,7 @@ pub(super) struct TransferEditor {
 }
 
 impl TransferEditor {
-    /// The editor of a window.
+    /// Creates the editor for a window.
     pub(super) fn new(window: WindowPainter) -> Self {
         Self {
             backdrop: Backdrop::new(window),
@@ -76,15 +76,14 @@ impl TransferEditor {
     }
 }
 
-/// The steps of the arrow keys: shares of the axes.
+/// Steps of the arrow keys along value and opacity, as shares of the axes.
 const NUDGE: [f64; 2] = [1.0 / 256.0, 0.01];
 
-/// Points of width in which all tools have room side by side: those of the curve take 590 at most, the others
-/// 510.
+/// Width at which all tools fit side by side, in points: those of the curve take at most 590, the others 510.
 const WIDE: f32 = 1100.0;
 
 impl TransferEditor {
-    /// Shows the editor in the whole of `ui`.
+    /// Shows the editor in the whole of `ui`. `marked`: value that the probe marks, if any.
     pub(super) fn ui(
         &mut self,
         ui: &mut Ui,
@@ -100,10 +99,10 @@ impl TransferEditor {
             self.curve = Curve::Eye;
         }
         if *self.edited(settings) != self.left {
-            // Somebody else has changed it: its points may be others.
+            // The curve was changed elsewhere: its points may be others.
             self.selection.clear();
         }
-        // In the frame of the release, too, in which the last movement counts.
+        // Held also in the frame of the release, in which the last movement counts.
         let is_held = ui.input(|input| input.pointer.any_down() || input.pointer.any_released());
         let span = self.span.of(is_held, volume.ranges, volume.range);
         let letters = egui::TextStyle::Button.resolve(ui.style()).size / theme::LETTERS;
@@ -150,7 +149,8 @@ impl TransferEditor {
         plot::mark(ui, &axes, marked);
     }
 
-    /// What edits the curve; whether that is the whole of it. `span`: what the axis of values spans.
+    /// Shows the tools that edit the curve or the selected points; returns true if no point is selected. `span`:
+    /// values that the axis spans.
     fn curve_tools(
         &mut self,
         ui: &mut Ui,
@@ -166,14 +166,14 @@ impl TransferEditor {
         let is_linked = settings.lighting.linked;
         let tip = if is_linked { text::transfer::LINKED_TIP } else { text::transfer::LIGHT.tip };
         if light.on_hover_text(tip).clicked() && is_linked {
-            // Whoever wants to edit it wants it to be another.
+            // Selecting the lighting curve to edit it implies a separate curve.
             set_linked(settings, false);
         }
         if self.curve != before {
             self.selection.clear();
         }
         ui.separator();
-        // Light passes matter that has a hue where shadows are coloured.
+        // With coloured shadows, light that passes material takes its hue.
         let has_colors = self.curve == Curve::Eye || settings.has_colored_shadows();
         let function = self.edited(settings);
         let selected = self.selection.within(function.points.len());
@@ -195,7 +195,7 @@ impl TransferEditor {
         selected.is_empty()
     }
 
-    /// What can be done in the plot, as far as there is room to say so.
+    /// Shows the hint for the plot's gestures, truncated to the width that is left.
     fn hint(&self, ui: &mut Ui) {
         let hint = if self.freehand.on { text::transfer::DRAW_HINT } else { text::transfer::HINT };
         ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
@@ -203,7 +203,7 @@ impl TransferEditor {
         });
     }
 
-    /// The curve that is edited.
+    /// Returns the curve that is being edited.
     fn edited<'a>(&self, settings: &'a mut Settings) -> &'a mut TransferFunction {
         match self.curve {
             Curve::Eye => &mut settings.transfer,
@@ -211,7 +211,7 @@ impl TransferEditor {
         }
     }
 
-    /// What replaces the whole curve, and how the plot shows it.
+    /// Shows the tools that replace the whole curve, and the options of the plot.
     fn plot_tools(
         &mut self,
         ui: &mut Ui,
@@ -233,7 +233,7 @@ impl TransferEditor {
         self.zoom.button(ui);
     }
 
-    /// With the pointer over the plot, Ctrl+A selects all points, and Escape none.
+    /// With the pointer over the plot, Ctrl+A selects all points, and Escape clears the selection.
     fn select_by_keys(&mut self, ui: &Ui, response: &Response, count: usize) {
         if !response.contains_pointer() || ui.ctx().text_edit_focused() {
             return;
@@ -267,8 +267,8 @@ impl TransferEditor {
         }
     }
 
-    /// Shows the points and lets the user move and remove them. `range`: the values to which they can be moved; `hovered`: the
-    /// pointer is on the plot.
+    /// Shows the points and handles their selection, movement and removal. `range`: values within which they can be
+    /// moved; `hovered`: the pointer is on the plot.
     fn edit_points(
         &mut self,
         ui: &Ui,
@@ -284,7 +284,7 @@ impl TransferEditor {
         let on_point = (0..function.points.len()).any(|index| focused == Some(id_of(index)));
         let deletes =
             |input: &egui::InputState| input.key_pressed(Key::Delete) || input.key_pressed(Key::Backspace);
-        // Somebody may be typing, or working elsewhere.
+        // The user may be typing in a field, or working elsewhere.
         let mut removes = (on_point || (focused.is_none() && hovered)) && ui.input(deletes);
         for index in 0..function.points.len() {
             if !axes.shows(function.points[index].value) {
@@ -308,7 +308,7 @@ impl TransferEditor {
                 self.selection.wants_focus = false;
                 response.request_focus();
             } else if response.gained_focus() && !self.selection.has(index) {
-                // Reached by the keyboard.
+                // Focused by the keyboard.
                 self.selection.only(index);
             }
             if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
@@ -345,7 +345,7 @@ impl TransferEditor {
         }
     }
 
-    /// Arrow keys move what is selected.
+    /// Moves the selected points by the arrow keys.
     fn nudge(
         &mut self,
         ui: &Ui,

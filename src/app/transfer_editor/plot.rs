@@ -1,4 +1,4 @@
-//! What the transfer function editor paints.
+//! Painting of the transfer function plot: axes, curves, control points, labels and readout.
 
 use eframe::egui::{
     self, Align2, Color32, FontId, Painter, Pos2, Rect, Response, Shape, Stroke, Ui, Vec2, pos2,
@@ -12,35 +12,35 @@ use crate::data::Histogram;
 use crate::data::ValueRange;
 use crate::model::{Settings, TransferFunction};
 
-/// Points between two samples of a curve.
+/// Distance between two samples of a curve, in points.
 const SAMPLE_STEP: f32 = 2.0;
-/// Room around the plot, so that points at its borders can be grabbed.
+/// Margin around the plot, in points, so that control points at its borders can be grabbed.
 const MARGIN: Vec2 = Vec2::new(8.0, 7.0);
 
-/// Value and opacity as places in the window.
+/// Mapping from value and opacity to positions in the window.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Axes {
-    /// The whole area, with its margin.
+    /// Whole area, including the margin.
     pub area: Rect,
-    /// The smallest and the largest value.
+    /// Values at the left and right end.
     pub range: ValueRange,
-    /// Whether all of the volume's values are shown.
+    /// True if all of the volume's values are shown.
     is_whole: bool,
     plot: Rect,
-    /// What everything is painted with.
+    /// Colours of lines, texts and grounds.
     pub ink: PlotInk,
 }
 
 impl Axes {
-    /// Axes over an area.
+    /// Creates axes over an area, for the values that are shown.
     pub(super) fn new(area: Rect, shown: ShownValues, ink: PlotInk) -> Self {
         let ShownValues { low, high, is_whole } = shown;
-        // A volume with a single value still needs an axis.
+        // A volume of a single value still needs an axis.
         let range = ValueRange::new(low, if high > low { high } else { low + 1.0 });
         Self { area, range, is_whole, plot: area.shrink2(MARGIN), ink }
     }
 
-    /// Where a value and an opacity are.
+    /// Position of a value and an opacity in the window, clamped to the plot.
     pub(super) fn position(&self, value: f64, opacity: f64) -> Pos2 {
         let x = ((value - self.range.low) / (self.range.high - self.range.low)).clamp(0.0, 1.0) as f32;
         pos2(
@@ -49,32 +49,32 @@ impl Axes {
         )
     }
 
-    /// Value and opacity at a place, within the axes.
+    /// Value and opacity at a position, clamped to the axes.
     pub(super) fn values(&self, at: Pos2) -> (f64, f64) {
         let x = f64::from(((at.x - self.plot.min.x) / self.plot.width()).clamp(0.0, 1.0));
         let y = f64::from(((self.plot.max.y - at.y) / self.plot.height()).clamp(0.0, 1.0));
         (self.range.low + x * (self.range.high - self.range.low), y)
     }
 
-    /// Whether a value lies within what is shown.
+    /// Returns true if a value lies within the shown range.
     pub(super) fn shows(&self, value: f64) -> bool {
-        // A volume's outermost points may lie beyond it, at the border.
+        // With all values shown, points beyond them are drawn at the border.
         let slack = 1e-9 * (self.range.high - self.range.low);
         (self.range.low - slack..=self.range.high + slack).contains(&value) || self.is_whole
     }
 
-    /// Whether a place across the window is over the plot.
+    /// Returns true if a horizontal position is over the plot.
     pub(super) fn is_within(&self, x: f32) -> bool {
         self.plot.x_range().contains(x)
     }
 
-    /// Where a value is along the plot, also beyond it.
+    /// Horizontal position of a value, also beyond the plot.
     fn x(&self, value: f64) -> f32 {
         self.plot.min.x
             + ((value - self.range.low) / (self.range.high - self.range.low)) as f32 * self.plot.width()
     }
 
-    /// Places along the value axis at which curves are sampled.
+    /// Horizontal positions at which curves are sampled, with their values.
     fn samples(&self) -> impl Iterator<Item = (f32, f64)> + use<> {
         let Self { plot, range, .. } = *self;
         let count = (plot.width() / SAMPLE_STEP).ceil().max(1.0) as usize;
@@ -84,7 +84,7 @@ impl Axes {
         })
     }
 
-    /// Width of the plot in points.
+    /// Width of the plot, in points.
     pub(super) fn width(&self) -> f32 {
         self.plot.width()
     }
@@ -94,11 +94,11 @@ impl Axes {
     }
 }
 
-/// Voxels per bar: at most one bar per point of width, and one per value where those are fewer.
+/// Number of voxels per bar: at most one bar per point of width, or one per distinct value if there are fewer.
 pub(super) fn bars(histogram: &Histogram, levels: Option<usize>, width: f32) -> Vec<u64> {
     let bins = histogram.counts.len();
     if let Some(levels) = levels.filter(|&levels| levels <= bins && levels <= width as usize) {
-        // Each value has a bin of its own; those between are empty.
+        // Each value has a bin of its own; the bins between are empty.
         let bin = |level: usize| (level * bins / (levels - 1).max(1)).min(bins - 1);
         return (0..levels).map(|level| histogram.counts[bin(level)]).collect();
     }
@@ -107,14 +107,14 @@ pub(super) fn bars(histogram: &Histogram, levels: Option<usize>, width: f32) -> 
     (0..columns).map(|column| histogram.counts[first(column)..first(column + 1)].iter().sum()).collect()
 }
 
-/// The eye's curve.
+/// Paints the eye's curve, dimmed if it is not edited.
 pub(super) fn eye_curve(painter: &Painter, axes: &Axes, function: &TransferFunction, edited: bool) {
     let line = axes.samples().map(|(x, value)| pos2(x, axes.y(function.opacity_at(value)))).collect();
     let strength = if edited { 1.0 } else { 0.5 };
     painter.add(Shape::line(line, Stroke::new(1.5, axes.ink.eye.gamma_multiply(strength))));
 }
 
-/// The lighting curve: a line, dashed while it follows the eye's.
+/// Paints the lighting curve, dashed while it is linked to the eye's.
 pub(super) fn light_curve(painter: &Painter, axes: &Axes, settings: &Settings, edited: bool) {
     let linked = settings.lighting.linked;
     let function = if linked { &settings.transfer } else { &settings.lighting.curve };
@@ -130,7 +130,7 @@ pub(super) fn light_curve(painter: &Painter, axes: &Axes, settings: &Settings, e
     }
 }
 
-/// The ends of the axes.
+/// Paints the labels at the ends of the axes.
 pub(super) fn labels(painter: &Painter, axes: &Axes) {
     let ink = axes.ink.eye.gamma_multiply(0.75);
     let plot = axes.plot;
@@ -142,13 +142,13 @@ pub(super) fn labels(painter: &Painter, axes: &Axes) {
     write(plot.left_top(), Align2::LEFT_TOP, text::transfer::OPACITY_ONE.to_owned());
 }
 
-/// A value with as many digits as the range deserves.
+/// Formats a value with as many digits as the range needs.
 fn number(value: f64, range: ValueRange) -> String {
     let decimals = decimals(range);
     format!("{value:.decimals$}")
 }
 
-/// A control point.
+/// Paints a control point: a disc of its colour in a ring.
 pub(super) fn point(
     painter: &Painter,
     ink: &PlotInk,
@@ -161,7 +161,7 @@ pub(super) fn point(
     painter.circle(at, radius, color, Stroke::new(if selected { 2.0 } else { 1.5 }, ring));
 }
 
-/// Value and opacity under the pointer.
+/// Paints value and opacity under the pointer.
 pub(super) fn readout(ui: &Ui, axes: &Axes, response: &Response, settings: &Settings) {
     let Some(at) = response.hover_pos() else { return };
     let (value, _) = axes.values(at);
@@ -176,7 +176,7 @@ pub(super) fn readout(ui: &Ui, axes: &Axes, response: &Response, settings: &Sett
     over_anything(&painter, axes, (place, align), words, axes.ink.eye);
 }
 
-/// Writes on a ground of its own: curves and what fills them have any colour.
+/// Paints text on a ground of its own, legible over curves and fills of any colour.
 fn over_anything(painter: &Painter, axes: &Axes, (at, align): (Pos2, Align2), text: String, ink: Color32) {
     let galley = painter.layout_no_wrap(text, FontId::proportional(11.0), ink);
     let area = align.anchor_size(at, galley.size());
@@ -184,7 +184,7 @@ fn over_anything(painter: &Painter, axes: &Axes, (at, align): (Pos2, Align2), te
     painter.galley(area.min, galley, ink);
 }
 
-/// The value that another view marks.
+/// Marks the value that the light probe reads in another view.
 pub(super) fn mark(ui: &Ui, axes: &Axes, marked: Option<f64>) {
     let Some(value) = marked.filter(|&value| axes.shows(value)) else { return };
     let x = axes.x(value);

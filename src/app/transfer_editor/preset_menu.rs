@@ -1,5 +1,5 @@
-//! Menu of the presets: a small picture of each, by domain. Those for another kind of data are dim, and those in use have
-//! a frame.
+//! Menu of transfer function presets: a thumbnail of each, by domain. Presets for another kind of data are dimmed,
+//! and those in use are framed.
 
 use eframe::egui::{
     self, Align2, Color32, Rect, Response, Role, ScrollArea, Sense, Stroke, StrokeKind, TextStyle, Ui, Vec2,
@@ -14,21 +14,22 @@ use crate::app::common::theme;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::model::{PRESETS, Preset, Settings};
 
-/// Points of a picture: half of its pixels.
+/// Size of a thumbnail in points: half of its pixels.
 const PICTURE: Vec2 = vec2(88.0, 58.0);
-/// Points around a picture, and of the title below it.
+/// Margin around a thumbnail, in points.
 const MARGIN: f32 = 4.0;
+/// Height of the title below a thumbnail, in points.
 const TITLE: f32 = 17.0;
-/// Pictures side by side: the largest domain, of seven, takes two rows.
+/// Number of thumbnails side by side: the largest domain, of seven, takes two rows.
 const COLUMNS: f32 = 4.0;
-/// Points above the menu's button that the list leaves: the command at its top, and the bar of the window.
+/// Height above the menu's button that the list leaves free, in points: the command at its top, and the menu bar.
 const ABOVE: f32 = 90.0;
-/// Points of height of the list at least, where two rows are seen.
+/// Smallest height of the list, in points, at which two rows are visible.
 const LEAST_HEIGHT: f32 = 200.0;
-/// Opacity of pictures of presets for another kind of data.
+/// Opacity of the thumbnails of presets for another kind of data, 0 to 255.
 const DIM: u8 = 90;
 
-/// What the menu shows, kept between frames.
+/// State of the preset menu between frames.
 #[derive(Debug, Default)]
 pub(super) struct PresetMenu {
     pictures: PresetPictures,
@@ -44,7 +45,7 @@ impl PresetMenu {
         volume: &VolumeFacts,
         commands: &mut Vec<Command>,
     ) {
-        // It opens upwards: below lies the plot.
+        // The menu opens upwards, because the plot is below.
         let height = (ui.cursor().top() - ABOVE).max(LEAST_HEIGHT);
         ui.menu_button(text::transfer::PRESETS, |ui| {
             let all = ui.button(&*Command::TryPresets.label()).on_hover_text(text::transfer::TRY_PRESETS_TIP);
@@ -57,7 +58,7 @@ impl PresetMenu {
             list.min_scrolled_height(height).show(ui, |ui| {
                 ui.spacing_mut().item_spacing = Vec2::splat(2.0);
                 ui.set_width(COLUMNS * (PICTURE.x + 2.0 * MARGIN + 2.0));
-                // The one of the benchmarks is for the command line.
+                // The preset of the benchmarks is for the command line only.
                 let listed: Vec<Preset> =
                     PRESETS.into_iter().filter(|preset| preset.domain() != "bench").collect();
                 for domain in listed.chunk_by(|a, b| a.domain() == b.domain()) {
@@ -75,7 +76,7 @@ impl PresetMenu {
         });
     }
 
-    /// A preset: its picture, and its title below.
+    /// Shows a preset: its thumbnail, and its title below.
     fn card(&mut self, ui: &mut Ui, preset: &Preset, suits: bool) -> Response {
         let size = PICTURE + vec2(2.0 * MARGIN, 2.0 * MARGIN + TITLE);
         let (area, response) = ui.allocate_exact_size(size, Sense::click());

@@ -1,4 +1,4 @@
-//! Small pictures of the presets, each on a volume that suits it; `script/preset-pictures` makes them.
+//! Thumbnails of the presets, each rendered from a suitable volume by `script/preset-pictures`.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ macro_rules! pictures {
     };
 }
 
-/// Files of the pictures, by the names of the presets.
+/// PNG files of the thumbnails, by preset name.
 const FILES: &[(&str, &[u8])] = pictures![
     "ct/bone",
     "ct/muscle_and_skin",
@@ -37,7 +37,7 @@ const FILES: &[(&str, &[u8])] = pictures![
     "paper/chair",
 ];
 
-/// Pixels of a picture, from its file.
+/// Decodes the thumbnail of a preset from its file.
 fn decoded(preset: &Preset) -> Option<ColorImage> {
     let (_, file) = FILES.iter().find(|(name, _)| *name == preset.name)?;
     let picture = image::load_from_memory_with_format(file, image::ImageFormat::Png).ok()?.to_rgb8();
@@ -45,7 +45,7 @@ fn decoded(preset: &Preset) -> Option<ColorImage> {
     Some(ColorImage::from_rgb(size, &picture))
 }
 
-/// Textures of the pictures that were shown, by the names of the presets.
+/// Textures of the thumbnails that have been shown, by preset name.
 #[derive(Default)]
 pub(super) struct PresetPictures(BTreeMap<&'static str, Option<TextureHandle>>);
 
@@ -56,7 +56,7 @@ impl std::fmt::Debug for PresetPictures {
 }
 
 impl PresetPictures {
-    /// The picture of a preset; none of one that has none.
+    /// Returns the thumbnail of a preset, decoded on first use; `None` if it has no file.
     pub(super) fn get(&mut self, ctx: &Context, preset: &Preset) -> Option<&TextureHandle> {
         let made = self.0.entry(preset.name).or_insert_with(|| {
             decoded(preset).map(|picture| ctx.load_texture("preset", picture, TextureOptions::LINEAR))

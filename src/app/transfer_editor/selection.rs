@@ -1,4 +1,4 @@
-//! Which points are selected, and what moves them together.
+//! Selection of control points: by click, by rubber band, and moving the selected points together.
 
 use std::collections::BTreeSet;
 
@@ -9,61 +9,61 @@ use super::theme;
 use crate::data::ValueRange;
 use crate::model::TransferFunction;
 
-/// Indices of points, and a frame that is being drawn around more of them.
+/// Indices of the selected points, and the rubber band that selects more of them.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub(super) struct Selection {
     points: BTreeSet<usize>,
-    /// The keyboard is to go to the first of them.
+    /// True if the first selected point is to take the keyboard focus.
     pub wants_focus: bool,
-    /// Where the frame began.
+    /// Corner at which the rubber band began.
     frame: Option<Pos2>,
 }
 
-/// How far points are moved.
+/// Distance by which points are moved, along both axes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shift {
-    /// Along the values.
+    /// Distance along the value axis, in data units.
     pub value: f64,
-    /// Towards opaque.
+    /// Distance along the opacity axis, positive towards opaque.
     pub opacity: f64,
 }
 
 impl Selection {
-    /// Nothing but one point.
+    /// Selects one point and no other.
     pub(super) fn only(&mut self, index: usize) {
         self.points = [index].into();
     }
 
-    /// One point more, or one less.
+    /// Adds a point to the selection, or removes it.
     pub(super) fn toggle(&mut self, index: usize) {
         if !self.points.remove(&index) {
             self.points.insert(index);
         }
     }
 
-    /// All of so many.
+    /// Selects all of `count` points.
     pub(super) fn all(&mut self, count: usize) {
         self.points = (0..count).collect();
         self.wants_focus = true;
     }
 
-    /// None.
+    /// Clears the selection of points.
     pub(super) fn clear(&mut self) {
         self.points.clear();
     }
 
-    /// Whether it has a point.
+    /// Returns true if a point is selected.
     pub(super) fn has(&self, index: usize) -> bool {
         self.points.contains(&index)
     }
 
-    /// Those that are left of so many points, in ascending order.
+    /// Returns the selected indices below `count` in ascending order, and drops the others.
     pub(super) fn within(&mut self, count: usize) -> Vec<usize> {
         self.points.retain(|&index| index < count);
         self.points.iter().copied().collect()
     }
 
-    /// Selects what a frame surrounds that is drawn with the mouse; with Shift, what was selected stays.
+    /// Selects the points inside a rubber band drawn with the mouse; with Shift, the previous selection is kept.
     pub(super) fn frame(&mut self, ui: &Ui, response: &Response, axes: &Axes, function: &TransferFunction) {
         let primary = PointerButton::Primary;
         if response.drag_started_by(primary) {
@@ -89,7 +89,7 @@ impl Selection {
         }
     }
 
-    /// Removes its points, but for the last of a function: without any it would be invisible for good.
+    /// Removes the selected points, but always leaves one: a function without points could never be seen again.
     pub(super) fn remove(&mut self, function: &mut TransferFunction) {
         for index in self.within(function.points.len()).into_iter().rev() {
             if function.points.len() > 1 {
@@ -99,8 +99,8 @@ impl Selection {
         self.points.clear();
     }
 
-    /// Moves its points by as much as none of them passes another that stays, leaves the values, or becomes more
-    /// than opaque or less than clear.
+    /// Moves the selected points together, by at most the distance at which none of them passes an unselected
+    /// neighbour, leaves the values, or leaves the opacities 0 to 1.
     pub(super) fn shift(&mut self, function: &mut TransferFunction, range: ValueRange, by: Shift) {
         let Shift { value, opacity } = by;
         let selected = self.within(function.points.len());
@@ -110,7 +110,7 @@ impl Selection {
         let mut bounds = Vec::with_capacity(selected.len());
         for &index in &selected {
             let point = points[index];
-            // Points from a preset may lie beyond this volume's values, and stay where they are.
+            // Points from a preset may lie beyond this volume's values, and may stay there.
             let (mut low, mut high) = (range.low.min(point.value), range.high.max(point.value));
             if let Some(before) = index.checked_sub(1).filter(|&before| !self.has(before)) {
                 low = points[before].value;
@@ -124,7 +124,7 @@ impl Selection {
         }
         for (index, low, high) in bounds {
             let point = &mut function.points[index];
-            // Rounding must not carry it past its neighbour.
+            // Rounding must not carry a point past its neighbour.
             point.value = (point.value + value.max(left).min(right)).clamp(low, high);
             point.opacity = (point.opacity + opacity.max(down).min(up)).clamp(0.0, 1.0);
         }

@@ -1,4 +1,4 @@
-//! Which values the plot shows: the wheel zooms to the pointer, a drag with the middle button moves.
+//! Zoom of the plot along the value axis: the wheel zooms to the pointer, a drag with the middle button moves.
 
 use eframe::egui::{PointerButton, Rect, Response, Ui};
 
@@ -6,38 +6,38 @@ use super::super::text;
 use crate::app::viewport::orbit::wheel_notches;
 use crate::data::{ValueRange, ValueRanges};
 
-/// A notch of the wheel shows this much less.
+/// Factor by which a notch of the wheel narrows the shown range.
 const ZOOM_PER_NOTCH: f64 = 1.2;
-/// Least share of the values that is shown: the histogram has a thousand bars, of which these are twenty.
+/// Smallest share of the values that is shown: the histogram has a thousand bars, and this is twenty of them.
 const LEAST_SHARE: f64 = 0.02;
 
-/// A part of the values; nothing is all of them.
+/// Part of the values that the plot shows; `None` is all of them.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 pub(super) struct Zoom {
     part: Option<ValueRange>,
 }
 
-/// The values that the plot shows.
+/// Range of values that the plot shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ShownValues {
-    /// The smallest.
+    /// Smallest value that is shown.
     pub low: f64,
-    /// The largest.
+    /// Largest value that is shown.
     pub high: f64,
-    /// Whether these are all of the volume's values.
+    /// True if all of the volume's values are shown.
     pub is_whole: bool,
 }
 
-/// What the axis of values spans: what is shown of the volume, which control points widen, but for the time that a button
-/// is held. Otherwise a point that is dragged would move the axis, and the axis the point.
+/// Range of the value axis: the shown range of the volume, widened by control points, but frozen while a button is
+/// held. Otherwise a dragged point would move the axis, and the axis the point.
 #[derive(Debug, Default, Clone, Copy)]
 pub(super) struct Span {
-    /// The values of a volume, and what the axis has spanned since the button was pressed.
+    /// Value ranges of the volume, and the span frozen since the button was pressed.
     held: Option<(ValueRanges, ValueRange)>,
 }
 
 impl Span {
-    /// What it spans in this frame.
+    /// Returns the span of this frame, frozen while `is_held`.
     pub(super) fn of(&mut self, is_held: bool, ranges: ValueRanges, shown: ValueRange) -> ValueRange {
         let held = self.held.filter(|(before, _)| is_held && *before == ranges);
         let span = held.map_or(shown, |(_, span)| span);
@@ -46,28 +46,28 @@ impl Span {
     }
 }
 
-/// The values to which points can be moved: all that there are, and all that the axis spans.
+/// Values within which points can be moved: all values of the volume and all that the axis spans.
 pub(super) fn limits(ranges: ValueRanges, span: ValueRange) -> ValueRange {
     ValueRange::new(ranges.all.low.min(span.low), ranges.all.high.max(span.high))
 }
 
 impl Zoom {
-    /// The values that are shown of a range.
+    /// Values of a range that are shown at the current zoom.
     pub(super) fn shown(&self, range: ValueRange) -> ShownValues {
-        // Another volume has other values.
+        // Another volume has other values, so the zoom does not apply.
         match self.part.filter(|part| part.low >= range.low && part.high <= range.high) {
             Some(ValueRange { low, high }) => ShownValues { low, high, is_whole: false },
             None => ShownValues { low: range.low, high: range.high, is_whole: true },
         }
     }
 
-    /// How much wider the plot of all values would be.
+    /// Zoom factor: width of the range over the width that is shown.
     pub(super) fn factor(&self, range: ValueRange) -> f32 {
         let ShownValues { low, high, .. } = self.shown(range);
         ((range.high - range.low) / (high - low).max(1e-300)).clamp(1.0, 1.0 / LEAST_SHARE) as f32
     }
 
-    /// Takes what the mouse does on the plot.
+    /// Handles wheel and middle-button drags over the plot.
     pub(super) fn ui(&mut self, ui: &Ui, response: &Response, area: Rect, range: ValueRange) {
         let Some(pointer) = ui.ctx().pointer_hover_pos().filter(|at| area.contains(*at)) else { return };
         let share = f64::from(((pointer.x - area.min.x) / area.width().max(1.0)).clamp(0.0, 1.0));
@@ -81,7 +81,7 @@ impl Zoom {
         }
     }
 
-    /// Offers to show everything again, while it does not.
+    /// Shows a button that resets the zoom, while it is zoomed in.
     pub(super) fn button(&mut self, ui: &mut Ui) {
         let all = text::transfer::SHOW_ALL;
         if self.part.is_some() && ui.button(all.name).on_hover_text(all.tip).clicked() {
@@ -89,7 +89,7 @@ impl Zoom {
         }
     }
 
-    /// Shows a share of what is shown now, with the value at `share` where it is.
+    /// Scales the shown range by a factor, with the value at `share` fixed.
     fn by(&mut self, range: ValueRange, share: f64, factor: f64) {
         let ShownValues { low, high, .. } = self.shown(range);
         let all = range.high - range.low;
@@ -98,7 +98,7 @@ impl Zoom {
         self.show(range, low, width);
     }
 
-    /// Moves by a share of what is shown.
+    /// Moves the shown range by a share of its width.
     fn along(&mut self, range: ValueRange, share: f64) {
         let ShownValues { low, high, is_whole } = self.shown(range);
         if !is_whole {

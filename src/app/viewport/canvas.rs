@@ -1,25 +1,25 @@
-//! Where the picture is: a rectangle on the grid of the screen's pixels.
+//! Canvas: the rectangle of the picture in the window, aligned to the grid of physical pixels.
 
 use eframe::egui::{Rect, pos2, vec2};
 
-/// The picture's rectangle in points and its size in physical pixels, on the pixel grid.
+/// Rectangle of the picture in points, and its size in physical pixels; the edges lie on the pixel grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Canvas {
-    /// In points; every edge is at a whole physical pixel.
+    /// Rectangle in points; every edge lies on a whole physical pixel.
     pub rect: Rect,
-    /// In physical pixels.
+    /// Width and height in physical pixels.
     pub size: [u32; 2],
-    /// The size, in physical pixels, of what the picture would fill if its shape were free.
+    /// Size, in physical pixels, of the area that the picture could fill if its aspect ratio were free.
     pub room: [u32; 2],
 }
 
-/// Shapes that differ by less look the same.
+/// Relative difference of two aspect ratios below which they count as equal.
 const ALIKE: f64 = 0.01;
 
 impl Canvas {
-    /// The largest rectangle on the pixel grid within another.
+    /// Returns the largest pixel-aligned canvas inside `rect`, which is in points.
     pub(crate) fn within(rect: Rect, pixels_per_point: f32) -> Self {
-        // A hair of tolerance: 799.9999 is pixel 800.
+        // Tolerance of 0.01 pixels against rounding errors: 799.9999 is pixel 800.
         let up = |x: f32| (x * pixels_per_point - 0.01).ceil();
         let down = |x: f32| (x * pixels_per_point + 0.01).floor();
         let (left, top) = (up(rect.min.x), up(rect.min.y));
@@ -35,7 +35,7 @@ impl Canvas {
         }
     }
 
-    /// The largest one in the middle of this that has a shape (width over height).
+    /// Returns the largest canvas centred in this one with `shape` as its aspect ratio (width over height).
     pub(crate) fn of_shape(self, shape: f64, pixels_per_point: f32) -> Self {
         let here = f64::from(self.rect.width()) / f64::from(self.rect.height().max(1.0));
         if (here / shape - 1.0).abs() < ALIKE {

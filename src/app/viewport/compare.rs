@@ -1,5 +1,5 @@
-//! Two looks in one picture: left and right of a divider, or what lies between them. Two views are beside each other,
-//! each with its middle in that of its part.
+//! Comparison of two looks in one picture: left and right of a divider, or as an amplified difference. Two views
+//! stand side by side, each centred in its part.
 
 use eframe::egui::{self, Align2, CursorIcon, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2};
 use eframe::egui::{WidgetInfo, pos2, vec2};
@@ -11,29 +11,29 @@ use crate::app::worker::request::Looks;
 use crate::gpu::Distance;
 use crate::model::{Settings, Variant};
 
-/// Points to either side of the divider in which it can be taken.
+/// Half width of the divider's drag area, in points.
 const GRIP: f32 = 7.0;
-/// Radius of its handle.
+/// Radius of the divider's handle, in points.
 const HANDLE: f32 = 9.0;
-/// Points from the edge of the picture to words over it.
+/// Distance of labels from the border of the picture, in points.
 const MARGIN: f32 = 8.0;
-/// Points around words, on their dark background.
+/// Padding between a label and the border of its dark background, in points.
 const PADDING: Vec2 = Vec2::new(6.0, 3.0);
 
-/// What is compared, and how.
+/// Settings of the comparison: its two sides and how they are displayed.
 #[derive(Debug, Clone)]
 pub(crate) struct Compare {
-    /// Whether two looks are shown.
+    /// True if two looks are compared.
     pub on: bool,
-    /// The look left of the divider.
+    /// Variant of the look left of the divider.
     pub left: Variant,
-    /// The look right of the divider.
+    /// Variant of the look right of the divider.
     pub right: Variant,
-    /// Show what lies between them instead.
+    /// Shows the amplified difference of the two pictures instead of both.
     pub difference: bool,
-    /// What the looks on the left and on the right are called, where they are looks that have names.
+    /// Names of the looks on the left and on the right, if they are named looks.
     pub names: [Option<String>; 2],
-    /// The divider's place, as a share of the width.
+    /// Position of the divider, as a fraction of the picture's width.
     divider: f32,
 }
 
@@ -51,15 +51,15 @@ impl Default for Compare {
 }
 
 impl Compare {
-    /// Shows the current look on the left and another one on the right.
+    /// Starts a comparison of the current look, on the left, with another one on the right.
     pub(crate) fn with(&mut self, look: Settings) {
         (self.on, self.left, self.right) = (true, Variant::Current, Variant::Look(Box::new(look)));
         self.names = [None, None];
     }
 
-    /// What is to be rendered: the look, or the left and the right one.
+    /// Returns the looks to be rendered: the current one, or the left and the right one of a comparison.
     pub(crate) fn looks(&self, settings: &Settings) -> Looks {
-        // What is kept is no part of a picture.
+        // Kept views and looks do not affect the picture.
         let settings = Settings { kept: Vec::new(), ..settings.clone() };
         if self.on {
             Looks { left: self.left.of(&settings), right: Some(self.right.of(&settings)) }
@@ -68,7 +68,7 @@ impl Compare {
         }
     }
 
-    /// The picture, or two of them, and the part of the rectangle in which each is seen.
+    /// Returns the shapes of one or two pictures, each with the part of `rect` to which it is clipped.
     pub(crate) fn shapes(&self, rect: Rect, pictures: &Pictures) -> [(Rect, Shape); 2] {
         let nothing = || (rect, Shape::Noop);
         let opaque = |picture| paint_callback::picture(rect, picture, u8::MAX);
@@ -91,19 +91,20 @@ impl Compare {
         })
     }
 
-    /// Whether the two are seen from different places: then nothing in the window lies over both of them.
+    /// Returns true if the two sides have different cameras: then no overlay of the window fits both of them.
     pub(crate) fn shows_two_views(&self) -> bool {
         self.on && !self.difference && [&self.left, &self.right].iter().any(|side| is_view(side))
     }
 
-    /// What the words of a comparison leave of the picture: its middle, without a row at the top and one at the bottom.
+    /// Returns the part of the picture that the comparison's labels leave free: without one row at the top and one at
+    /// the bottom.
     pub(crate) fn beside_words(&self, ui: &Ui, rect: Rect) -> Rect {
         let font = egui::TextStyle::Small.resolve(ui.style());
         let row = ui.ctx().fonts_mut(|fonts| fonts.row_height(&font));
         rect.shrink2(vec2(0.0, if self.on { MARGIN + row + 2.0 * PADDING.y } else { 0.0 }))
     }
 
-    /// What the left and the right one are called.
+    /// Returns the names of the left and the right side.
     pub(crate) fn called(&self) -> [String; 2] {
         let sides = [(&self.left, &self.names[0]), (&self.right, &self.names[1])];
         sides.map(|(variant, name)| match (variant, name) {
@@ -112,7 +113,7 @@ impl Compare {
         })
     }
 
-    /// The divider and what is known of the difference, over the picture.
+    /// Shows the divider, the names of both sides and the measured difference, over the picture.
     pub(crate) fn ui(&mut self, ui: &Ui, rect: Rect, pictures: &Pictures) {
         if !self.on || rect.width() < 4.0 * GRIP {
             return;
@@ -127,7 +128,7 @@ impl Compare {
             let words = text::picture::difference(left, right);
             label(pos2(rect.center().x, top), Align2::CENTER_TOP, &words);
         } else {
-            // Beside the divider: lights and cube have the corners.
+            // Beside the divider, since light chips and the orientation cube occupy the corners.
             let x = rect.left() + self.divider * rect.width();
             label(pos2(x - GRIP, top), Align2::RIGHT_TOP, left);
             label(pos2(x + GRIP, top), Align2::LEFT_TOP, right);
@@ -139,7 +140,7 @@ impl Compare {
         }
     }
 
-    /// The line that can be dragged.
+    /// Shows the divider line and lets the user drag it.
     fn divide(&mut self, ui: &Ui, rect: Rect) {
         let x = rect.left() + self.divider * rect.width();
         let grip = Rect::from_x_y_ranges(x - GRIP..=x + GRIP, rect.y_range());
@@ -170,7 +171,7 @@ fn is_view(variant: &Variant) -> bool {
     matches!(variant, Variant::View(_))
 }
 
-/// A few words on a dark background.
+/// Paints a short label on a dark background.
 fn chip(ui: &Ui, at: Pos2, align: Align2, text: &str) {
     let font = egui::TextStyle::Small.resolve(ui.style());
     let painter = ui.painter();

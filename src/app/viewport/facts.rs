@@ -1,4 +1,4 @@
-//! What the rest of the window may know of the renderer.
+//! Statistics and state of the renderer, for display in the rest of the window.
 
 use crate::app::viewport::Viewport;
 use crate::app::worker::request::Looks;
@@ -6,84 +6,84 @@ use crate::data::plain;
 use crate::gpu::{LightFigures, Stage};
 use crate::model::MAX_NAME;
 
-/// What is going on.
+/// Activity of the renderer, for the status bar.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::app) enum Doing {
-    /// There is nothing to show.
+    /// No volume is open.
     Nothing,
-    /// The picture is as good as an export.
+    /// The picture on screen has the quality of an export.
     FullQuality,
-    /// A coarser picture is on screen; the user is still moving something.
+    /// A coarser picture is on screen, while the user is still changing something.
     Preview,
-    /// The full-quality picture is on its way: what is done now, and the share that is done.
+    /// The full-quality picture is in progress: its current stage, and the completed fraction.
     Refining(Stage, f32),
-    /// It could not be rendered.
+    /// The request could not be rendered.
     Failed,
-    /// The device is gone.
+    /// The GPU device is lost.
     Lost,
 }
 
-/// Figures about the renderer, for display.
+/// Statistics and state of the renderer, for display.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::app) struct Facts {
-    /// Name of the adapter.
+    /// Name of the graphics adapter.
     pub adapter: String,
-    /// Driver and interface.
+    /// Graphics API and driver, with version.
     pub driver: String,
-    /// Whether the adapter is the CPU.
+    /// True if the adapter is a software driver on the CPU.
     pub software: bool,
-    /// Milliseconds of the last full-quality picture.
+    /// Time of the last full-quality picture, in milliseconds.
     pub full_ms: Option<f64>,
-    /// Milliseconds of the last preview.
+    /// Time of the last preview, in milliseconds.
     pub preview_ms: Option<f64>,
-    /// How often light volumes were filled.
+    /// Number of times that light volumes were filled.
     pub light_rebuilds: u64,
-    /// Light volumes that are kept.
+    /// Number of light volumes in the cache.
     pub cached_light_volumes: usize,
-    /// Share of what the last full-quality picture shows that is nearly black.
+    /// Share of the visible part of the last full-quality picture that is nearly black, 0 to 1.
     pub dark_share: Option<f64>,
-    /// The picture, or the left one of two, shows nothing of the volume.
+    /// True if nothing of the volume is visible in the picture, or in the left one of a comparison.
     pub shows_nothing: bool,
-    /// Footprints that the last full-quality picture has splatted; 0 of one that gathers.
+    /// Number of footprints splatted for the last full-quality picture; 0 if it was gathered.
     pub splats: u64,
-    /// Mebibytes of light volumes.
+    /// Memory of the light volumes, in mebibytes.
     pub light_mebibytes: f64,
-    /// Mebibytes of textures.
+    /// Memory of all textures, in mebibytes.
     pub gpu_mebibytes: f64,
-    /// The light volume of each light of the picture, if it has one.
+    /// Statistics of each light's volume, in the order of the lights; `None` for lights without one.
     pub light_volumes: Vec<Option<LightFigures>>,
-    /// The volume of the sky, if there is one.
+    /// Statistics of the sky-visibility volume, if there is one.
     pub sky: Option<LightFigures>,
-    /// That of light that has bounced.
+    /// Statistics of the volume of multiply scattered light, if there is one.
     pub bounces: Option<LightFigures>,
-    /// What the renderer does now.
+    /// Current activity of the renderer.
     pub doing: Doing,
 }
 
-/// What a light volume costs.
+/// Cost of a light volume: time to fill it, and memory.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::app) struct LightCost {
-    /// Milliseconds until it is filled, where that was measured.
+    /// Time to fill it in milliseconds, if that was measured.
     pub ms: Option<f64>,
-    /// Mebibytes that it takes.
+    /// Memory that it occupies, in mebibytes.
     pub mebibytes: f64,
 }
 
 impl LightCost {
-    /// What a filled volume took; none of one that is being filled.
+    /// Returns the cost of a complete volume; `None` while it is being filled.
     fn of(figures: &LightFigures) -> Option<Self> {
         let mebibytes = figures.bytes as f64 / f64::from(1 << 20);
         figures.complete.then_some(Self { ms: figures.fill_ms, mebibytes })
     }
 
-    /// At another resolution: voxels that are so many times as fine along each axis.
+    /// Scales the cost to another resolution: voxels that are `times` as fine along each axis.
     pub(in crate::app) fn finer(self, times: f64) -> Self {
         let voxels = times.powi(3);
         Self { ms: self.ms.map(|ms| ms * voxels), mebibytes: self.mebibytes * voxels }
     }
 }
 
-/// The dearest of some volumes.
+/// Returns the cost of the most expensive volume, by time and then by memory.
 fn dearest<'a>(volumes: impl Iterator<Item = &'a LightFigures>) -> Option<LightCost> {
     volumes.filter_map(LightCost::of).max_by(|a, b| {
         let ms = |cost: &LightCost| cost.ms.unwrap_or_default();
@@ -92,31 +92,31 @@ fn dearest<'a>(volumes: impl Iterator<Item = &'a LightFigures>) -> Option<LightC
 }
 
 impl Facts {
-    /// What one more light that casts shadows would cost, as the dearest does that there is; none where nothing was
-    /// measured.
+    /// Estimates the cost of one more light with shadows, as that of the most expensive present one; `None` if
+    /// nothing was measured.
     pub(in crate::app) fn light_cost(&self) -> Option<LightCost> {
         dearest(self.light_volumes.iter().flatten())
     }
 
-    /// What one of these lights takes: the dearest.
+    /// Returns the cost of the most expensive light among those for which `is_meant` is true.
     pub(in crate::app) fn cost_of(&self, is_meant: impl Fn(usize) -> bool) -> Option<LightCost> {
         let meant = self.light_volumes.iter().enumerate().filter(|(light, _)| is_meant(*light));
         dearest(meant.filter_map(|(_, figures)| figures.as_ref()))
     }
 
-    /// What the sky takes.
+    /// Returns the cost of the sky-visibility volume.
     pub(in crate::app) fn sky_cost(&self) -> Option<LightCost> {
         self.sky.as_ref().and_then(LightCost::of)
     }
 
-    /// What light takes that bounces.
+    /// Returns the cost of the volume of multiply scattered light.
     pub(in crate::app) fn bounces_cost(&self) -> Option<LightCost> {
         self.bounces.as_ref().and_then(LightCost::of)
     }
 }
 
 impl Viewport {
-    /// Figures about the renderer.
+    /// Collects the statistics and the state of the renderer.
     pub(in crate::app) fn facts(&self, looks: &Looks) -> Facts {
         let info = &self.context.info;
         let figures = self.thread.figures();
@@ -143,12 +143,12 @@ impl Viewport {
         }
     }
 
-    /// How often light volumes were filled.
+    /// Number of times that light volumes were filled.
     pub(in crate::app) fn light_rebuilds(&self) -> u64 {
         self.thread.figures().light_rebuilds
     }
 
-    /// How many pictures at full quality were made after previews.
+    /// Number of full-quality pictures that followed previews.
     pub(in crate::app) fn refinements(&self) -> u64 {
         self.thread.figures().refinements
     }

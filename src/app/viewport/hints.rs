@@ -1,23 +1,23 @@
-//! Three hints over the first picture that somebody sees; gone for good with the first drag or a click on them.
+//! Three hints for new users over the first picture; dismissed permanently by the first drag or a click on them.
 
 use eframe::egui::{self, Id, Rect, Response, Sense, Ui, Vec2, WidgetInfo, vec2};
 
 use crate::app::common::theme;
 use crate::app::text;
 
-/// Points around them, and between two of them.
+/// Padding around the hints, and the gap between two of them, both in points.
 const MARGIN: Vec2 = Vec2::new(14.0, 10.0);
 const GAP: f32 = 6.0;
 
-/// Whether they are shown.
+/// Visibility of the first-start hints.
 #[derive(Debug, Default)]
 pub(crate) struct Hints {
-    /// They have not been seen yet.
+    /// True until the user has dismissed the hints.
     pub on: bool,
 }
 
 impl Hints {
-    /// Shows them until the picture is used.
+    /// Shows the hints until the user interacts with the picture.
     pub(crate) fn show(&mut self, ui: &Ui, picture: Rect, used: &Response) {
         if used.dragged() || used.clicked() || ui.input(|input| input.pointer.any_down()) {
             self.on = false;
@@ -35,8 +35,8 @@ impl Hints {
         let row = rows[0][0].size().y;
         let width = rows.iter().flatten().map(|galley| galley.size().x).fold(0.0, f32::max);
         let size = vec2(width, (2.0 * row + GAP) * rows.len() as f32 - GAP) + 2.0 * MARGIN;
-        // In the corner that nothing else has, and no wider than need be: the object stands in the middle, the scale bar
-        // at the left.
+        // In the corner that is otherwise free, and no wider than necessary: the object is in the middle, the scale
+        // bar at the left.
         let area = Rect::from_min_size(picture.max - size - vec2(8.0, 8.0), size);
         painter.rect_filled(area, 8.0, theme::OUTLINE.gamma_multiply(0.78));
         let mut at = area.min + MARGIN;

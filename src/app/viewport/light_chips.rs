@@ -1,4 +1,4 @@
-//! The lights as chips at the top of the picture: which there are, which shine, which one is selected.
+//! Light chips at the top of the picture: one per light, showing its name, whether it is on and which is selected.
 
 use eframe::egui::{self, Rect, Sense, Ui, UiBuilder, vec2};
 
@@ -10,10 +10,10 @@ use crate::app::common::theme;
 use crate::app::text;
 use crate::model::{Light, MAX_LIGHTS, Settings};
 
-/// Width of a name: of longer ones the middle is left out, and they are whole in the chip's tip.
+/// Width of the widest name, in points; longer names are elided in the middle and complete in the chip's tooltip.
 const LONGEST_NAME: f32 = 140.0;
 
-/// Shows the chips. Where they are.
+/// Shows the light chips and returns the rectangle that they cover.
 pub(crate) fn show(
     ui: &mut Ui,
     picture: Rect,
@@ -61,7 +61,7 @@ pub(crate) fn show(
                 commands.push(Command::AddLight);
             }
         }
-        // The row itself is as wide as it may become.
+        // The row itself extends over the full available width.
         ui.min_rect()
     });
     shown.inner
@@ -71,7 +71,8 @@ fn fill(selected: bool) -> egui::Color32 {
     theme::OUTLINE.gamma_multiply(if selected { 0.9 } else { 0.6 })
 }
 
-/// A dot in the light's colour, dimmed with its intensity and hollow when it is off; and its name.
+/// Shows one chip: a dot in the light's colour, dimmed with its intensity and hollow if it is off, and the light's
+/// name.
 fn chip(ui: &mut Ui, light: &Light, selected: bool) -> egui::Response {
     let font = egui::TextStyle::Button.resolve(ui.style());
     let name = if light.name.is_empty() { text::lights::UNNAMED } else { &light.name };
@@ -104,7 +105,7 @@ fn chip(ui: &mut Ui, light: &Light, selected: bool) -> egui::Response {
     response
 }
 
-/// The tip of a light's chip: what it is, and what its shadows cost.
+/// Returns the tooltip of a light's chip: name, intensity, and the cost of its shadows.
 fn chip_tip(light: &Light, volume: Option<super::LightFigures>) -> String {
     let shadows = match volume {
         _ if !light.casts_shadows => text::lights::NO_SHADOWS.to_owned(),

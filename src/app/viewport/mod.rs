@@ -1,8 +1,8 @@
-//! The picture in the middle of the window: previews while something moves, full quality at rest.
+//! Viewport: the picture in the middle of the window, with previews during interaction and full quality when idle.
 //!
-//! The window's thread only requests and takes finished pictures; a thread of its own
-//! renders them, on a device of its own. Whatever the GPU does, the window stays alive: long work
-//! never stands in the queue of its frames, and a driver that loses the one device keeps the other.
+//! The window's thread only posts requests and takes finished pictures; the render thread renders them on a separate
+//! GPU device. The window therefore stays responsive whatever the GPU does: long work never enters the queue of its
+//! frames, and when a driver loses one device, the other one remains.
 
 pub(super) mod canvas;
 pub(super) mod compare;
@@ -36,73 +36,73 @@ pub(super) use crate::gpu::LightFigures;
 use crate::gpu::{Context, Distance, GpuError, Renderer, WindowPainter, WindowPicture};
 use crate::model::Settings;
 
-/// How long a frame of the window waits for a preview: what is left of 1/60 s.
+/// Longest time that a frame of the window waits for a preview: the rest of 1/60 s.
 const PREVIEW_WAIT: Duration = Duration::from_millis(12);
-/// How long a frame of the window waits for a preview where the window is drawn by the processors that make the
-/// preview, which would only delay it: what is left of the 50 ms that a window may be without answer.
+/// Longest time that a frame of the window waits for a preview on a software driver, where drawing the window would
+/// only take processor time from the preview: the rest of the 50 ms for which a window may be unresponsive.
 const SOFTWARE_PREVIEW_WAIT: Duration = Duration::from_millis(40);
 
-/// How long a preview takes to fade into the picture at full quality.
+/// Duration of the cross-fade from a preview to the full-quality picture, in seconds.
 const FADE_S: f64 = 0.12;
 
-/// What can be drawn.
+/// Pictures that are ready to be drawn.
 #[derive(Debug, Clone)]
 pub(super) struct Pictures {
-    /// The picture, or the left one of two.
+    /// The picture, or the left one of a comparison.
     pub left: Option<WindowPicture>,
-    /// The preview that was shown before, and what is left of its opacity.
+    /// The previous preview during a cross-fade, and its remaining opacity, 0 to 255.
     pub fading: Option<(WindowPicture, u8)>,
-    /// Where two looks are compared.
+    /// Right picture and difference, if two looks are compared.
     pub other: Option<Other>,
 }
 
-/// The second picture of a comparison.
+/// Right picture of a comparison, with the difference.
 #[derive(Debug, Clone)]
 pub(super) struct Other {
-    /// The right one.
+    /// Picture of the right look.
     pub right: WindowPicture,
-    /// What lies between them, amplified.
+    /// Amplified difference of both pictures.
     pub difference: WindowPicture,
-    /// How far they are apart.
+    /// Measured distance of both pictures.
     pub distance: Distance,
 }
 
-/// The picture on screen, and the way to the thread that renders it.
+/// State of the picture on screen, and the connection to the render thread.
 #[derive(Debug)]
 pub(super) struct Viewport {
-    /// What a frame may take while something moves, in milliseconds; `None` for what suits the adapter.
+    /// Time budget for a frame during interaction, in milliseconds; `None` for the adapter's default.
     pub frame_ms: Option<f64>,
     context: Context,
     /// Draws pictures into the window.
     window: WindowPainter,
     thread: RenderThread,
-    /// The balance that is being measured.
+    /// Ticket of the balance measurement in progress.
     measurement: Option<u64>,
-    /// What the render thread was asked for last.
+    /// Last request that was sent to the render thread.
     frame_request: Option<FrameRequest>,
     waiting: Waiting<FrameRequest>,
-    /// The last picture that was waited for was not there in time.
+    /// True if the last preview that a frame waited for did not arrive in time.
     waited_in_vain: bool,
     generation: u64,
     dataset: Option<Dataset>,
-    /// The picture, or of a comparison left, right and their difference.
+    /// Textures of the picture, or of the left and right picture of a comparison and their difference.
     placed: [Option<WindowPicture>; 3],
-    /// The preview that fades into the picture at full quality, and since when (egui's seconds).
+    /// The preview that fades into the full-quality picture, and the start of the fade in egui's seconds.
     fading: Option<(WindowPicture, f64)>,
     now_s: f64,
-    /// How far the two are apart.
+    /// Measured distance of the two compared pictures.
     differs: Option<Distance>,
     shown: Option<(FrameRequest, QualityLevel)>,
-    /// The request that could not be rendered; the render thread does not try it again.
+    /// Request that could not be rendered; the render thread does not retry it.
     failed: Option<FrameRequest>,
     lost: bool,
-    /// The last picture at full quality that nobody has taken yet.
+    /// Last full-quality picture that has not been taken yet.
     finished: Option<Arc<ColorImage>>,
 }
 
 impl Viewport {
-    /// An empty viewport; pictures will be rendered with `context`, which is not the window's own, and drawn with
-    /// `window`, which is.
+    /// Creates an empty viewport. Pictures are rendered with `context`, which is separate from the window's own, and
+    /// drawn with `window`, which belongs to it.
     pub(super) fn new(context: Context, window: WindowPainter, ctx: &egui::Context) -> std::io::Result<Self> {
         let thread = RenderThread::start(context.clone(), ctx.clone())?;
         Ok(Self {
@@ -127,7 +127,7 @@ impl Viewport {
         })
     }
 
-    /// Shows another volume from now on; its picture replaces the old one when it is complete.
+    /// Switches to another volume; its picture replaces the old one when it is complete.
     pub(super) fn set_scene(&mut self, renderer: Renderer, dataset: Dataset) {
         self.generation += 1;
         self.dataset = Some(dataset.clone());
@@ -136,7 +136,7 @@ impl Viewport {
         self.waiting.clear();
     }
 
-    /// Shows the same volume otherwise from now on, with the renderer that there is.
+    /// Replaces the dataset of the current volume (another shown range or corrections), keeping its renderer.
     pub(super) fn set_dataset(&mut self, dataset: Dataset) {
         self.generation += 1;
         self.dataset = Some(dataset.clone());
@@ -146,34 +146,34 @@ impl Viewport {
         self.waiting.clear();
     }
 
-    /// Lets the picture at full quality wait while the look is about to change by itself.
+    /// Delays the full-quality picture while the look is about to change automatically.
     pub(super) fn hold_refinement(&self, holds: bool) {
         self.thread.hold_refinement(holds);
     }
 
-    /// Asks for the balance of a look of the volume, which is measured when its light volumes are filled.
+    /// Requests a measurement of a look's balance, which takes place once its light volumes are filled.
     pub(super) fn measure_balance(&mut self, settings: &Settings) {
         self.measurement = Some(self.thread.measure_balance(settings));
     }
 
-    /// The balance that was asked for last, once.
+    /// Takes the result of the last balance measurement, if it is ready; returns it only once.
     pub(super) fn take_balance(&mut self) -> Option<Result<f64, GpuError>> {
         let balance = self.thread.take_balance(self.measurement?)?;
         self.measurement = None;
         Some(balance)
     }
 
-    /// The device of the pictures.
+    /// Returns the GPU context that renders the pictures.
     pub(super) fn context(&self) -> &Context {
         &self.context
     }
 
-    /// The volume, for workers with a renderer of their own.
+    /// Returns the dataset, for workers with a renderer of their own.
     pub(super) fn dataset(&self) -> Option<Dataset> {
         self.dataset.clone()
     }
 
-    /// The picture to be drawn, or several.
+    /// Returns the pictures to be drawn in this frame.
     pub(super) fn pictures(&self) -> Pictures {
         let [left, right, difference] = self.placed.clone();
         let other = right.zip(difference).zip(self.differs);
@@ -188,37 +188,37 @@ impl Viewport {
         }
     }
 
-    /// The last picture at full quality of one look, once.
+    /// Takes the last full-quality picture of a single look; returns it only once.
     pub(super) fn take_finished(&mut self) -> Option<Arc<ColorImage>> {
         self.finished.take()
     }
 
-    /// How long the user has waited for pictures of this volume.
+    /// Returns the response times that the user experienced with this volume.
     pub(super) fn response(&self) -> Response {
         self.waiting.answers()
     }
 
-    /// Whether the device is gone and nothing will be rendered any more.
+    /// Returns true if the device is lost and nothing can be rendered any more.
     pub(super) fn is_lost(&self) -> bool {
         self.lost
     }
 
-    /// Whether the full-quality picture of these settings is on screen, and that of those they are compared with.
+    /// Returns true if the full-quality picture of these looks is on screen and no cross-fade is running.
     pub(super) fn is_idle(&self, looks: &Looks) -> bool {
         let is_full = self.shown.as_ref().is_some_and(|(_, quality)| *quality == QualityLevel::FULL);
         is_full && self.fading.is_none() && self.shows(looks)
     }
 
-    /// Whether a picture of these settings is on screen, a preview or not.
+    /// Returns true if a picture of these looks is on screen, be it a preview.
     pub(super) fn shows(&self, looks: &Looks) -> bool {
         let (Some(dataset), Some((shown, _))) = (&self.dataset, &self.shown) else { return false };
         let request = FrameRequest::new(self.generation, dataset, looks.clone(), shown.size);
         *shown == request && self.frame_request.as_ref().is_some_and(|requested| requested == shown)
     }
 
-    /// Asks the render thread for looks and takes what it has finished. To be called once per frame
-    /// before the picture is drawn. While something moves it waits a little for a preview: one that
-    /// is quick enough is seen in the frame of the movement itself.
+    /// Requests a picture of the looks from the render thread and takes finished ones. To be called once per frame,
+    /// before the picture is drawn. After a change it waits briefly for a preview, so that a quick one appears in the
+    /// same frame as the movement that caused it.
     pub(super) fn advance(
         &mut self,
         looks: Looks,
@@ -242,7 +242,8 @@ impl Viewport {
             }
             self.frame_request = Some(frame_request.clone());
         }
-        // What was too late for the last frame has been waited for long enough: it comes before what is newer.
+        // A preview that was too late for the last frame has been waited for long enough: it is taken before newer
+        // ones.
         let newest = (!self.waited_in_vain).then_some(&frame_request);
         let frame = self.thread.take_frame(newest, longest_wait);
         if longest_wait > Duration::ZERO {
@@ -264,9 +265,9 @@ impl Viewport {
     fn show(&mut self, frame: Frame, ctx: &egui::Context) {
         let Frame { request: frame_request, quality, dataset, image, other } = frame;
         self.dataset = Some(dataset);
-        // Pixel for pixel where there are enough of them.
+        // Pixel for pixel if the sizes match.
         let exact = image.size == frame_request.size.map(|n| n as usize);
-        // A preview of the same fades away; anything else is replaced at once.
+        // A preview of the same request fades out; any other picture is replaced at once.
         let is_same =
             self.shown.as_ref().is_some_and(|(shown, before)| *shown == frame_request && *before != quality);
         self.fading =

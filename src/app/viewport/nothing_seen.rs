@@ -1,4 +1,4 @@
-//! What the picture says where a look shows nothing of the volume, with buttons that help.
+//! Notice over the picture when a look shows nothing of the volume, with buttons that remedy it.
 
 use eframe::egui::{self, Align, Layout, Rect, RichText, Ui, UiBuilder, Vec2};
 
@@ -8,10 +8,10 @@ use crate::app::text;
 use crate::data::Volume;
 use crate::model::{Settings, auto};
 
-/// Points that the notice takes.
+/// Size of the notice, in points.
 const SIZE: Vec2 = Vec2::new(340.0, 84.0);
 
-/// Shows it, if nothing is seen.
+/// Shows the notice if nothing of the volume is visible.
 pub(crate) fn show(
     ui: &mut Ui,
     picture: Rect,

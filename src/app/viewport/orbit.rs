@@ -1,4 +1,4 @@
-//! The mouse on the picture: orbit, pan, zoom.
+//! Mouse navigation in the picture: orbit, pan, zoom, and window/level.
 
 use eframe::egui::{self, Key, PointerButton, Response};
 use glam::dvec2;
@@ -10,31 +10,33 @@ use crate::model::{Camera, Settings};
 
 /// Degrees of orbit per point of drag.
 const DEGREES_PER_POINT: f64 = 0.4;
-/// One notch of the wheel brings the eye this much nearer.
+/// Factor by which one notch of the wheel reduces the eye's distance.
 const ZOOM_PER_NOTCH: f64 = 1.1;
-/// Points of scrolling per notch.
+/// Points of scrolling per notch of the wheel.
 const POINTS_PER_NOTCH: f64 = 40.0;
 
-/// Natural logarithm of how much wider the window becomes by a drag across the whole picture.
+/// Natural logarithm of the factor by which a drag across the whole picture widens the value window.
 const WINDOW_PER_WIDTH: f64 = 2.0;
 
-/// How far the eye was when it began to go round an object that was all in the frame; while it does, that stays there.
+/// Distance of the eye at the start of an orbit around an object that was completely in the frame; the object stays
+/// in the frame during the orbit.
 #[derive(Debug, Default)]
 pub(crate) struct Orbit {
     distance: Option<f64>,
 }
 
-/// Room for rounding in what is seen of an object that was framed exactly.
+/// Tolerance for rounding errors in the outline of an object that was framed exactly.
 const ROUNDING: f64 = 1.0 + 1e-3;
 
 impl Orbit {
-    /// Begins to go round, from where the eye is.
+    /// Starts an orbit at the camera's present distance.
     pub(crate) fn begin(camera: &Camera, outline: Option<&Outline>) -> Self {
         let is_whole = |outline: &&Outline| camera.distance * ROUNDING >= outline.least_distance(camera);
         Self { distance: outline.filter(is_whole).map(|_| camera.distance) }
     }
 
-    /// Goes as far away as the object needs from this side, and comes back where it does not.
+    /// Moves the camera as far away as the object needs from this side, and back to the initial distance where it
+    /// does not.
     pub(crate) fn keep_in_frame(&self, camera: &mut Camera, outline: Option<&Outline>) {
         if let Some((distance, outline)) = self.distance.zip(outline) {
             camera.distance = distance.max(outline.least_distance(camera));
@@ -42,11 +44,11 @@ impl Orbit {
     }
 }
 
-/// Applies what the user does on the picture to the camera, or, while L is held, to a light; with the right
+/// Applies mouse gestures on the picture to the camera, or, while L is held, to the selected light; with the right
 /// button, to level and window of the transfer function.
 ///
-/// `zooms`: the wheel is not needed elsewhere. `range`: the values of the volume, if there is one. `outline`: of the
-/// object, if it is known.
+/// `zooms`: the wheel is not used elsewhere. `range`: range of the volume's values, if there is a volume. `outline`:
+/// outline of the object, if it is known.
 pub(crate) fn navigate(
     ui: &egui::Ui,
     response: &Response,
@@ -70,7 +72,7 @@ pub(crate) fn navigate(
     if let Some(light) = lit.filter(|_| response.dragged_by(PointerButton::Primary)) {
         light_keys::turn(light, camera, dx * DEGREES_PER_POINT, -dy * DEGREES_PER_POINT);
     } else if let Some(range) = range.filter(|_| response.dragged_by(PointerButton::Secondary)) {
-        // As in the slices: down means higher values.
+        // The direction matches that of the slice views: down means higher values.
         let shift = dy / height.max(1.0) * (range.high - range.low);
         transfer.shift_and_stretch(shift, (WINDOW_PER_WIDTH * dx / width.max(1.0)).exp());
     } else if pans {
@@ -85,14 +87,14 @@ pub(crate) fn navigate(
         if notches != 0.0 || pinch != 1.0 {
             let factor = ZOOM_PER_NOTCH.powf(-notches) / f64::from(pinch);
             let at = response.hover_pos().unwrap_or(response.rect.center()) - response.rect.min;
-            // As near as somebody wants it from now on.
+            // A zoom overrides the distance that the orbit would return to.
             *orbit = Orbit::default();
             camera.zoom_at(factor, dvec2(f64::from(at.x), f64::from(at.y)), dvec2(width, height));
         }
     }
 }
 
-/// Notches of the wheel in this frame, upwards.
+/// Returns the wheel's notches in this frame, positive upwards.
 pub(crate) fn wheel_notches(ui: &egui::Ui) -> f64 {
     f64::from(ui.input(|input| input.smooth_scroll_delta().y)) / POINTS_PER_NOTCH
 }

@@ -1,12 +1,12 @@
-//! A short turn from view to view, so that the eye sees how the object comes to stand as it does. It is shown alone: the
-//! settings have the new view at once.
+//! Animated transition between two views, so that the user can follow how the object turns. Only the display is
+//! animated: the settings have the new view at once.
 
 use crate::model::Camera;
 
-/// Seconds that it takes: long enough to be followed, and too short to be waited for.
+/// Duration of the transition, in seconds: long enough to follow, too short to wait for.
 const TURN_S: f64 = 0.15;
 
-/// A turn, while there is one.
+/// Camera transition in progress, if any.
 #[derive(Debug, Default)]
 pub(crate) struct Turning(Option<Turn>);
 
@@ -18,7 +18,7 @@ struct Turn {
 }
 
 impl Turning {
-    /// Begins to turn from one view to another, or from where a turn is now.
+    /// Starts a transition from one view to another; one that is in progress continues from its current view.
     pub(crate) fn begin(&mut self, from: &Camera, to: &Camera, now_s: f64) {
         if from != to {
             let from = self.shown(from, now_s).unwrap_or_else(|| from.clone());
@@ -26,11 +26,11 @@ impl Turning {
         }
     }
 
-    /// The view to be shown in the place of `camera`, while a turn leads there.
+    /// Returns the interpolated view to display instead of `camera`, while a transition to it is in progress.
     pub(crate) fn shown(&mut self, camera: &Camera, now_s: f64) -> Option<Camera> {
         let shown = self.0.as_ref().filter(|turn| turn.to == *camera).and_then(|turn| {
             let share = (now_s - turn.since_s) / TURN_S;
-            // Slowly at first and at last.
+            // Smoothstep: slow at the start and at the end.
             let eased = share * share * (3.0 - 2.0 * share);
             if share < 1.0 { turn.from.towards(&turn.to, eased.max(0.0)) } else { None }
         });
@@ -56,7 +56,7 @@ mod tests {
         assert!((half.unwrap_or_default() - from.azimuth_deg - 45.0).abs() < 1e-6, "{half:?}");
         assert_eq!(turning.shown(&to, 10.0 + TURN_S), None);
         assert_eq!(turning.shown(&to, 10.0), None, "it has ended");
-        // Whoever takes the view in hand meanwhile has it.
+        // A camera change by the user ends the transition.
         turning.begin(&from, &to, 20.0);
         assert_eq!(turning.shown(&from, 20.1), None);
     }

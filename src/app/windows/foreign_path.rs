@@ -1,4 +1,4 @@
-//! The question that is asked before a look from outside opens a volume that the user has never opened.
+//! Dialog that asks before a look from outside opens a volume that the user has never opened.
 
 use std::path::PathBuf;
 
@@ -9,60 +9,60 @@ use crate::app::text;
 use crate::data::plain;
 use crate::model::Record;
 
-/// Characters of a path that are shown: whoever is asked must see all of it.
+/// Longest path that is shown, in characters: the user must see all of it.
 const LONGEST_PATH: usize = 4096;
 
-/// What the user answered.
+/// Answer of the user to the dialog.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Answer {
-    /// Open it.
+    /// Open the volume that the look names.
     Open,
-    /// Ask for another file.
+    /// Ask for another file instead.
     Choose,
-    /// Only the look.
+    /// Apply the look without its volume.
     NotNow,
 }
 
-/// A look whose volume is not opened without a question.
+/// Look whose volume is not opened without asking.
 #[derive(Debug)]
 struct Asked {
     record: Record,
-    /// What can be opened; nothing if it never is.
+    /// Path that can be opened; `None` if it is never opened.
     path: Option<PathBuf>,
-    /// What the look says of it, and why it is not opened as if nothing were.
+    /// Path as the look names it, made printable, and the reason for asking.
     shown: String,
     why: &'static str,
 }
 
-/// State of the window.
+/// State of the dialog; empty while it is closed.
 #[derive(Debug, Default)]
 pub(crate) struct ForeignPath {
     asked: Option<Asked>,
 }
 
 impl ForeignPath {
-    /// Asks whether a file is to be opened for a look.
+    /// Asks whether to open a file for a look.
     pub(crate) fn ask(&mut self, path: PathBuf, record: Record) {
         let shown = plain(&path.to_string_lossy(), LONGEST_PATH);
         self.asked = Some(Asked { record, path: Some(path), shown, why: text::foreign_path::OUTSIDE });
     }
 
-    /// Says that what a look names is never opened.
+    /// Shows that a path named by a look is never opened.
     pub(crate) fn refuse(&mut self, named: &str, why: &'static str, record: Record) {
         self.asked = Some(Asked { record, path: None, shown: plain(named, LONGEST_PATH), why });
     }
 
-    /// Whether it is being asked.
+    /// Returns true while the dialog is open.
     pub(crate) fn asks(&self) -> bool {
         self.asked.is_some()
     }
 
-    /// The look that was asked about, and what it says of its volume; the window closes.
+    /// Takes the look and the path of its volume, and closes the dialog.
     pub(crate) fn take(&mut self) -> Option<(Record, Option<PathBuf>)> {
         self.asked.take().map(|asked| (asked.record, asked.path))
     }
 
-    /// Shows the window, if it is open. Gives what the user answered.
+    /// Shows the dialog, if it is open, and returns the user's answer.
     pub(crate) fn ui(&self, ctx: &egui::Context) -> Option<Answer> {
         let asked = self.asked.as_ref()?;
         let (mut open, mut answer) = (true, None);

@@ -1,4 +1,4 @@
-//! The windows "Keys and mouse" and "About".
+//! Help windows: "Keys and mouse" and "About".
 
 use eframe::egui;
 
@@ -8,10 +8,10 @@ use crate::app::text;
 use crate::app::viewport::Facts;
 use crate::model::SceneAxis;
 
-/// Room that keys and mouse take.
+/// Size of the tables of keys and mouse, in points.
 const TABLES: egui::Vec2 = egui::vec2(980.0, 626.0);
 
-/// Two columns: what is done, and what happens.
+/// Table of two columns: gesture or key, and effect.
 fn table(ui: &mut egui::Ui, name: &str, rows: impl IntoIterator<Item = (String, String)>) {
     egui::Grid::new(name).num_columns(2).striped(true).spacing([16.0, 4.0]).show(ui, |ui| {
         for (what, effect) in rows {
@@ -22,19 +22,19 @@ fn table(ui: &mut egui::Ui, name: &str, rows: impl IntoIterator<Item = (String, 
     });
 }
 
-/// Which of the windows are open.
+/// Help windows that are open.
 #[derive(Debug, Default)]
 pub(crate) struct Help {
-    /// "Keys and mouse".
+    /// True if "Keys and mouse" is open.
     pub keys: bool,
-    /// "About".
+    /// True if "About" is open.
     pub about: bool,
 }
 
 impl Help {
-    /// Shows the windows that are open; some names say which axis of the scene points up.
+    /// Shows the open windows; the names of some commands state which axis of the scene points up.
     pub(crate) fn ui(&mut self, ctx: &egui::Context, facts: &Facts, up: SceneAxis) {
-        // All of it where the window has room, else with scroll bars.
+        // All of it if the window is large enough, else with scroll bars.
         let room = frame::room(ctx);
         let size = TABLES.min(room.size() - egui::vec2(80.0, 60.0));
         let window = egui::Window::new(text::help::KEYS_AND_MOUSE)

@@ -1,4 +1,4 @@
-//! The window that looks into a light volume: a slice in false colours, and its export.
+//! Window that shows a slice of a light volume in false colours, and exports it.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -18,37 +18,37 @@ use crate::plan::{LightKey, Request};
 /// Longest edge of the slice on screen, in points.
 const EDGE: f32 = 360.0;
 
-/// What a worker brings back: of which light volume, and its values.
+/// Result of the worker: key of the light volume, and its attenuation.
 type Filled = (LightKey, Attenuation);
 
-/// A slice that is shown.
+/// Slice that the texture shows.
 #[derive(Debug, Clone, PartialEq)]
 struct Drawn {
-    /// The light volume.
+    /// Key of the light volume.
     key: LightKey,
-    /// The axis across which it is cut.
+    /// Axis across which it is cut.
     axis: usize,
-    /// The voxel along that axis.
+    /// Index of the slice along that axis, in voxels.
     at: usize,
 }
 
-/// The window.
+/// State of the window, and the light volume that it shows.
 #[derive(Default)]
 pub(crate) struct LightSlice {
-    /// Whether it is there.
+    /// True while the window is open.
     pub open: bool,
     light: usize,
     axis: usize,
-    /// Slice along each axis; the middle until the user moves it.
+    /// Index of the slice along each axis; the middle until the user moves it.
     at: [Option<usize>; 3],
     work: Option<Work<Result<Option<Filled>, GpuError>>>,
     filled: Option<(LightKey, Arc<Attenuation>)>,
-    /// Of the look as it is.
+    /// Key of the light volume under the current settings.
     wanted: Option<LightKey>,
-    /// The key that could not be filled: it is not tried again.
+    /// Key that could not be filled; it is not tried again.
     failed: Option<LightKey>,
     texture: Option<TextureHandle>,
-    /// What the texture shows.
+    /// Slice that the texture shows.
     drawn: Option<Drawn>,
 }
 
@@ -58,20 +58,20 @@ impl std::fmt::Debug for LightSlice {
     }
 }
 
-/// What the window works with.
+/// Context of the window: settings, volume and device.
 pub(crate) struct Scene<'a> {
-    /// The look.
+    /// Current settings, for the light's key.
     pub settings: &'a Settings,
-    /// The open volume.
+    /// Open volume, if there is one.
     pub dataset: Option<Dataset>,
-    /// A device beside which the worker may open its own.
+    /// Window's device; the worker opens a sibling of it.
     pub context: &'a Context,
-    /// Nothing moves: a light volume that is filled now will be used.
+    /// True when the scene is idle, so that a light volume filled now will be used.
     pub at_rest: bool,
 }
 
 impl LightSlice {
-    /// Shows the window if it is open. `true` when the user wants to export.
+    /// Shows the window if it is open; returns true if the user wants to export.
     pub(crate) fn ui(&mut self, ctx: &egui::Context, scene: &Scene<'_>) -> Result<bool, String> {
         if !self.open {
             return Ok(false);
@@ -96,7 +96,7 @@ impl LightSlice {
                 }
             });
             let Some((key, attenuation)) = self.filled.clone() else {
-                // One that is being filled is not said to be none.
+                // While a volume is being filled, the window does not claim that there is none.
                 let is_coming = self.work.is_some() || !scene.at_rest;
                 ui.weak(if is_coming { text::light_volume::FILLING } else { text::light_volume::NONE });
                 return;
@@ -118,7 +118,7 @@ impl LightSlice {
         result.map(|()| export)
     }
 
-    /// Writes what is shown: the slice if the name ends in .png, else the whole.
+    /// Writes the shown slice if the name ends in .png, else the whole light volume.
     pub(crate) fn export(&self, path: &Path, volume: &Volume) -> Result<(), String> {
         let Some((_, attenuation)) = &self.filled else {
             return Err(text::light_volume::NOTHING_TO_EXPORT.to_owned());
@@ -134,7 +134,7 @@ impl LightSlice {
         written.map_err(|err| err.to_string())
     }
 
-    /// Takes in what the worker has filled, and sends it again when something else is to be shown.
+    /// Takes the result of the worker, and starts it again if another light volume is to be shown.
     fn collect(&mut self, ctx: &egui::Context, scene: &Scene<'_>) -> Result<(), String> {
         if let Some(result) = self.work.as_ref().and_then(Work::take) {
             self.work = None;
@@ -175,7 +175,7 @@ impl LightSlice {
         let light = self.light;
         let task = move || {
             let mut renderer = Renderer::new(&context.sibling()?)?;
-            // Combined, it would be gone.
+            // With combined storage there would be no volume for this light.
             request.settings.shadows.storage = LightStorage::PerLight;
             let options = RenderOptions { fill_everything: true, ..RenderOptions::default() };
             renderer.draw(&dataset, &request.settings, request.size, &options)?;
@@ -198,7 +198,7 @@ impl LightSlice {
         let Some(texture) = &self.texture else { return };
         let size = texture.size_vec2();
         let image = egui::Image::new((texture.id(), size * (EDGE / size.max_elem())));
-        // Another is on its way.
+        // Dimmed while another slice is in progress.
         let tint = if is_old { egui::Color32::from_gray(0x70) } else { egui::Color32::WHITE };
         let shown = ui.add(image.tint(tint));
         if is_old {
@@ -209,7 +209,7 @@ impl LightSlice {
     }
 }
 
-/// What the colours mean.
+/// Legend of the false colours, from dark to fully lit.
 fn scale(ui: &mut egui::Ui) {
     ui.horizontal(|ui| {
         ui.weak(text::light_volume::DARK);

@@ -1,35 +1,35 @@
-//! Asks how to go on when the graphics device was lost again soon after it was lost.
+//! Dialog after repeated loss of the graphics device, which asks how to go on.
 
 use eframe::egui;
 
 use crate::app::text;
 
-/// How to go on.
+/// Choice of the user after a repeated device loss.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Answer {
-    /// As before.
+    /// Continue with the same settings.
     TryAgain,
-    /// With the level of quality that asks least of the device.
+    /// Continue at the quality level that demands least of the device.
     LowerQuality,
-    /// On the adapter that is the CPU.
+    /// Continue on the CPU adapter (software driver).
     UseCpu,
-    /// Not at all; the look is kept.
+    /// Quit; the look has been saved.
     Quit,
 }
 
-/// The window that asks.
+/// State of the dialog: open or closed.
 #[derive(Debug, Default)]
 pub(crate) struct LostAgain {
     is_open: bool,
 }
 
 impl LostAgain {
-    /// Asks from now on.
+    /// Opens the dialog from the next frame on.
     pub(crate) fn ask(&mut self) {
         self.is_open = true;
     }
 
-    /// Shows the window while the question is open. Gives the answer, once.
+    /// Shows the dialog while it is open, and returns the answer once.
     pub(crate) fn ui(&mut self, ctx: &egui::Context, is_cpu: bool) -> Option<Answer> {
         if !self.is_open {
             return None;

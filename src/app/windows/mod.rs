@@ -1,4 +1,4 @@
-//! Windows over the main one: export, files, slices, contact sheet, help.
+//! Windows over the main window: export, files, slices, contact sheet, help.
 
 pub(super) mod chooser;
 pub(super) mod contact_sheet;

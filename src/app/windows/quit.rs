@@ -1,31 +1,31 @@
-//! Asks before the window closes on an export that is not done.
+//! Dialog that asks before the window closes during an export.
 
 use eframe::egui::{self, ViewportCommand};
 
 use crate::app::text;
 
-/// What is to become of the export.
+/// State of quitting during an export.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 enum Wish {
-    /// Nobody wants to quit.
+    /// The user does not want to quit.
     #[default]
     Stay,
     /// The user is being asked.
     Asked,
-    /// Quit when it is done.
+    /// Quit when the export is done.
     After,
-    /// Quit at once.
+    /// Quit at once, cancelling the export.
     Now,
 }
 
-/// The window that asks.
+/// State of the dialog for quitting.
 #[derive(Debug, Default)]
 pub(crate) struct Quit {
     wish: Wish,
 }
 
 impl Quit {
-    /// Holds the main window back while an export is being made, asks, and lets it go. To be called in each frame.
+    /// Keeps the main window open while an export runs, asks the user, and then closes it. Called in each frame.
     pub(crate) fn ui(&mut self, ctx: &egui::Context, is_exporting: bool) {
         let is_closing = ctx.input(|input| input.viewport().close_requested());
         if is_closing && is_exporting && self.wish != Wish::Now {

@@ -1,4 +1,4 @@
-//! Offers the looks of runs that crashed.
+//! Crash recovery dialog, which offers the autosaved looks of runs that crashed.
 
 use std::path::PathBuf;
 use std::time::SystemTime;
@@ -9,33 +9,33 @@ use crate::app::common::frame;
 use crate::app::memory::EarlierRun;
 use crate::app::text;
 
-/// Points that a small picture has along its longer edge.
+/// Longer edge of a thumbnail, in points.
 const EDGE: f32 = 128.0;
 
-/// A look that is offered.
+/// Look of a crashed run that is offered.
 struct Offer {
     look: PathBuf,
     name: String,
     picture: Option<TextureHandle>,
 }
 
-/// What the user answers.
+/// Answer of the user to the dialog.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Answer {
-    /// This look.
+    /// Restore the look in this file.
     GoOn(PathBuf),
-    /// None of them.
+    /// Restore none of the looks.
     NotNow,
 }
 
-/// The window; there is none when nothing crashed.
+/// State of the dialog, which is open while there are offers.
 #[derive(Default)]
 pub(crate) struct Recovery {
     offers: Vec<Offer>,
 }
 
 impl Recovery {
-    /// Offers those of the runs that crashed.
+    /// Creates the dialog with the looks of all runs that crashed.
     pub(crate) fn of(runs: &[EarlierRun], ctx: &egui::Context) -> Self {
         let crashed = runs.iter().filter(|run| run.crashed);
         let offers = crashed.map(|run| Offer {
@@ -48,12 +48,12 @@ impl Recovery {
         Self { offers: offers.collect() }
     }
 
-    /// Whether an answer is waited for.
+    /// Returns true while the dialog waits for an answer.
     pub(crate) fn asks(&self) -> bool {
         !self.offers.is_empty()
     }
 
-    /// Shows the window while there is something to offer. Gives the answer, once.
+    /// Shows the dialog while there are offers, and returns the answer once.
     pub(crate) fn ui(&mut self, ctx: &egui::Context) -> Option<Answer> {
         if self.offers.is_empty() {
             return None;
@@ -96,7 +96,7 @@ impl Recovery {
     }
 }
 
-/// What a run is called in a list.
+/// Name of an earlier run in a list: its source, and how long ago it ended.
 pub(crate) fn name(run: &EarlierRun) -> String {
     let ago = SystemTime::now().duration_since(run.when).unwrap_or_default();
     text::memory::earlier_look(&run.source, ago)

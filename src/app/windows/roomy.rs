@@ -1,4 +1,4 @@
-//! The question before a volume is read that has hardly room, or none: how much of it.
+//! Dialog that asks how much of a large volume to load.
 
 use std::path::PathBuf;
 
@@ -11,13 +11,13 @@ use crate::app::worker::weighing::{Fit, Weighed};
 use crate::data::load::{Portion, Region, Stretch, Thinning};
 use crate::data::plain;
 
-/// Characters of a path that are shown.
+/// Longest path that is shown, in characters.
 const LONGEST_PATH: usize = 200;
 
-/// Width of the window's texts, in points.
+/// Width of the dialog's texts, in points.
 const WIDTH: f32 = 440.0;
 
-/// What of a volume is read.
+/// Way to load a volume: thinned, in part, or whole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Wish {
     Average,
@@ -26,21 +26,21 @@ enum Wish {
     Whole,
 }
 
-/// What the user said.
+/// Answer of the user to the dialog.
 #[derive(Debug, Clone)]
 pub(crate) enum Answer {
-    /// To read so much of it.
+    /// Load the chosen portion of the volume.
     Read {
-        /// The file.
+        /// Path of the volume's file.
         source: PathBuf,
-        /// How it was to be read, and how much of it.
+        /// Options for reading, with the chosen portion.
         reading: Box<Reading>,
     },
-    /// Nothing.
+    /// Load nothing and close the dialog.
     Cancel,
 }
 
-/// A volume that is asked about.
+/// Volume that the dialog asks about.
 #[derive(Debug)]
 struct Asked {
     source: PathBuf,
@@ -48,18 +48,18 @@ struct Asked {
     weighed: Weighed,
     every: Option<Portion>,
     average: Option<Portion>,
-    /// First voxels and those behind the last.
+    /// Region per axis: first voxel, and one past the last.
     region: [[usize; 2]; 3],
     wish: Wish,
 }
 
-/// State of the window.
+/// State of the dialog; empty while it is closed.
 #[derive(Debug, Default)]
 pub(crate) struct Roomy {
     asked: Option<Asked>,
 }
 
-/// What there is to say of how a part fits.
+/// Remark on how well a portion fits into memory; `None` if it does.
 fn but(fit: Fit) -> Option<&'static str> {
     match fit {
         Fit::Well => None,
@@ -82,13 +82,13 @@ impl Asked {
         }
     }
 
-    /// What is chosen, if it has any room.
+    /// Chosen portion, if it fits into memory.
     fn chosen(&self) -> Option<Portion> {
         let portion = self.portion(self.wish)?;
         self.weighed.fit(&portion).filter(|fit| *fit != Fit::No).map(|_| portion)
     }
 
-    /// A way to read it, with what it takes.
+    /// Shows one way to load the volume, with the memory that it needs.
     fn way(&mut self, ui: &mut Ui, wish: Wish, name: &str, tip: &str) {
         let facts = self.portion(wish).and_then(|portion| {
             let [host, _] = self.weighed.needs(&portion)?;
@@ -116,7 +116,7 @@ impl Asked {
                 });
                 ui.name_inputs(text::roomy::end_along(name), |ui| ui.add(DragValue::new(end).range(1..=all)));
                 ui.end_row();
-                // One of them at least.
+                // At least one voxel along each axis.
                 if *first >= *end {
                     if *first == before[axis][0] { *first = *end - 1 } else { *end = *first + 1 }
                 }
@@ -137,11 +137,11 @@ impl Asked {
 }
 
 impl Roomy {
-    /// Asks how much of a volume is read.
+    /// Opens the dialog, with the least thinning that fits into memory as default.
     pub(crate) fn ask(&mut self, source: PathBuf, reading: Reading, weighed: Weighed) {
         let (every, average) = (weighed.thinned(Thinning::Every), weighed.thinned(Thinning::Average));
         let region = weighed.middle().0.map(|Stretch { first, end }| [first, end.unwrap_or(first + 1)]);
-        // Means look better than single voxels; of both as many as have room.
+        // Averages look better than single voxels; the method that keeps more voxels is preferred.
         let wish = match (every, average) {
             (Some(every), Some(average)) if every.thinning.step() < average.thinning.step() => Wish::Every,
             (_, Some(_)) => Wish::Average,
@@ -151,12 +151,12 @@ impl Roomy {
         self.asked = Some(Asked { source, reading, weighed, every, average, region, wish });
     }
 
-    /// Closes the window.
+    /// Closes the dialog without an answer.
     pub(crate) fn close(&mut self) {
         self.asked = None;
     }
 
-    /// Shows the window, if it is open. Gives what the user answered; it is closed then.
+    /// Shows the dialog, if it is open; closes it and returns the user's answer.
     pub(crate) fn ui(&mut self, ctx: &egui::Context) -> Option<Answer> {
         let asked = self.asked.as_mut()?;
         shortcuts::reserve_letters(ctx);

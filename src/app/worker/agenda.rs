@@ -1,4 +1,4 @@
-//! What the render thread does next: a preview at once, full quality when nothing has changed for a moment.
+//! Scheduling of the render thread: a preview at once, full quality when nothing has changed for a moment.
 
 use std::time::{Duration, Instant};
 
@@ -7,54 +7,54 @@ use super::quality::QualityLevel;
 use super::request::{FrameRequest, Scene};
 use crate::data::Dataset;
 
-/// A change this long ago is over: time to refine.
+/// Debounce interval: time without changes after which the picture is refined.
 const REST: Duration = Duration::from_millis(150);
 
-/// Why a picture is made.
+/// Reason for rendering a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Purpose {
-    /// To show something while the user moves something: it is finished whatever happens.
+    /// Response to a change in progress; it is finished in any case.
     Preview,
-    /// To show full quality: it is dropped when something else is requested.
+    /// Full quality at rest; it is dropped when something else is requested.
     Refinement,
 }
 
-/// When the next picture is to be made.
+/// Time at which the next picture is due.
 #[derive(Debug)]
 pub(super) enum Due {
-    /// At once.
+    /// Immediately, with its purpose and request.
     Now(Purpose, Box<FrameRequest>),
-    /// When nothing has changed for so long.
+    /// Once nothing has changed for this time.
     After(Duration),
-    /// When the window changes the mailbox.
+    /// Not before the window changes the mailbox.
     WithNews,
 }
 
-/// What the window requests, and how much of it is on screen.
+/// Schedule of the render thread: the window's requests, and what of them is already on screen.
 #[derive(Debug)]
 pub(super) struct Agenda {
-    /// A scene has come that replaces the one that is worked on.
+    /// New scene that replaces the present one.
     pub next_scene: Option<Scene>,
-    /// A volume has come that replaces the one that is worked on.
+    /// New dataset that replaces the present one.
     pub next_dataset: Option<Dataset>,
-    /// The window has closed.
+    /// True if the window has closed.
     pub is_closed: bool,
     frame_request: Option<FrameRequest>,
     changed: Instant,
-    /// The look is about to change by itself.
+    /// True while the look is about to change automatically.
     holds_refinement: bool,
-    /// What was refined as far as light volumes go, while that was so.
+    /// Request whose light volumes were filled while refinement was held.
     prepared: Option<FrameRequest>,
-    /// A picture was published, and the window had not taken it when the mailbox was looked at last.
+    /// True if a picture was published that the window had not taken when the mailbox was last read.
     is_frame_pending: bool,
-    /// What is on screen, or on its way there.
+    /// Request and quality of the last published picture.
     shown: Option<(FrameRequest, QualityLevel)>,
-    /// What could not be rendered and is not tried again.
+    /// Request that could not be rendered and is not retried.
     failed: Option<FrameRequest>,
 }
 
 impl Agenda {
-    /// Nothing to do.
+    /// Creates an empty schedule.
     pub(super) fn new() -> Self {
         Self {
             next_scene: None,
@@ -70,7 +70,7 @@ impl Agenda {
         }
     }
 
-    /// Takes note of what the window requests now.
+    /// Takes the window's new requests out of the mailbox.
     pub(super) fn read(&mut self, mailbox: &mut Mailbox) {
         self.is_closed = mailbox.closed;
         self.holds_refinement = mailbox.holds_refinement;
@@ -86,50 +86,50 @@ impl Agenda {
             self.changed = Instant::now();
             self.frame_request = Some(frame_request);
         }
-        // Until the window takes a picture nobody knows what it requests next: refining might only delay it.
+        // Until the window takes a picture, its next request is unknown: refining might only delay it.
         if self.is_frame_pending {
             self.changed = Instant::now();
             self.is_frame_pending = mailbox.frame.is_some();
         }
     }
 
-    /// Whether the window has left something that was not read.
+    /// Returns true if the mailbox contains anything that was not read yet.
     pub(super) fn has_news(&self, mailbox: &Mailbox) -> bool {
         mailbox.has_news(self.is_frame_pending) || mailbox.holds_refinement != self.holds_refinement
     }
 
-    /// The scene that replaces the one that is worked on, once: nothing of it is on screen.
+    /// Takes the scene that replaces the present one, and resets what is on screen.
     pub(super) fn take_scene(&mut self) -> Option<Scene> {
         let scene = self.next_scene.take()?;
         (self.shown, self.failed, self.prepared) = (None, None, None);
         Some(scene)
     }
 
-    /// The volume that replaces the one that is worked on, once: nothing of it is on screen.
+    /// Takes the dataset that replaces the present one, and resets what is on screen.
     pub(super) fn take_dataset(&mut self) -> Option<Dataset> {
         let dataset = self.next_dataset.take()?;
         (self.shown, self.failed, self.prepared) = (None, None, None);
         Some(dataset)
     }
 
-    /// Whether a picture must be dropped: the window closed or shows another volume, or a refinement is of something
-    /// that is no longer requested.
+    /// Returns true if a picture must be dropped: the window has closed or shows another volume, or a refinement
+    /// belongs to an outdated request.
     pub(super) fn is_obsolete(&self, purpose: Purpose, frame_request: &FrameRequest) -> bool {
         let is_other = purpose == Purpose::Refinement && Some(frame_request) != self.frame_request.as_ref();
         self.is_closed || self.next_scene.is_some() || self.next_dataset.is_some() || is_other
     }
 
-    /// Whether a picture is to wait until the look has changed: its light volumes are filled meanwhile.
+    /// Returns true if a picture waits until the look has changed; its light volumes are filled meanwhile.
     pub(super) fn is_held(&self, purpose: Purpose) -> bool {
         purpose == Purpose::Refinement && self.holds_refinement
     }
 
-    /// All is there that a picture needs before it is drawn.
+    /// Records that everything a picture needs before it is drawn is complete.
     pub(super) fn prepare(&mut self, frame_request: FrameRequest) {
         self.prepared = Some(frame_request);
     }
 
-    /// When the next picture is to be made.
+    /// Returns the time at which the next picture is due.
     pub(super) fn due(&self) -> Due {
         let Some(frame_request) = &self.frame_request else { return Due::WithNews };
         let shown = self.shown.as_ref().filter(|(shown, _)| shown == frame_request);
@@ -140,7 +140,7 @@ impl Agenda {
         }
         let rest = REST.saturating_sub(self.changed.elapsed());
         if shown.is_none() {
-            // Something to look at comes first.
+            // A first picture takes precedence over the pause.
             Due::Now(Purpose::Preview, Box::new(frame_request.clone()))
         } else if rest.is_zero() {
             Due::Now(Purpose::Refinement, Box::new(frame_request.clone()))
@@ -151,7 +151,7 @@ impl Agenda {
         }
     }
 
-    /// Whether nothing is to be drawn, now or soon.
+    /// Returns true if nothing is to be drawn, now or soon.
     pub(super) fn is_at_rest(&self) -> bool {
         matches!(self.due(), Due::WithNews)
             && !self.is_frame_pending
@@ -159,13 +159,13 @@ impl Agenda {
             && self.next_dataset.is_none()
     }
 
-    /// A picture is on its way to the screen.
+    /// Records that a picture was published to the window.
     pub(super) fn publish(&mut self, frame_request: FrameRequest, quality: QualityLevel) {
         self.shown = Some((frame_request, quality));
         self.is_frame_pending = true;
     }
 
-    /// What is requested cannot be rendered.
+    /// Records that the present request cannot be rendered.
     pub(super) fn give_up(&mut self) {
         self.failed.clone_from(&self.frame_request);
     }

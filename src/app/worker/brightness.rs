@@ -1,4 +1,4 @@
-//! Measures how bright pictures are, and exposes previews so that they are as bright as those at full quality.
+//! Brightness of pictures: measurement, and exposure compensation that makes previews as bright as full quality.
 
 use std::time::{Duration, Instant};
 
@@ -9,29 +9,29 @@ use crate::gpu::{GpuError, RenderOptions, Report, dark_share, is_empty_light, me
 use crate::model::Settings;
 use crate::plan::{EyeKey, Request};
 
-/// Largest previews whose brightness is measured: two milliseconds for a software adapter.
+/// Largest number of pixels of a preview whose brightness is measured: 2 ms on a software adapter.
 const EXPOSED_PIXELS: u64 = 1 << 18;
 
-/// How often darkness is measured while something moves on an adapter that previews at full quality:
-/// it reads back sixteen bytes per pixel.
+/// Interval between measurements of dark areas during interaction, on an adapter that previews at full quality: each
+/// reads back 16 bytes per pixel.
 const MEASURING_INTERVAL: Duration = Duration::from_millis(250);
 
-/// What is known of the brightness of pictures of one volume.
+/// Measured brightness of the pictures of one volume.
 #[derive(Debug)]
 pub(super) struct Brightness {
     exposures: Exposures,
-    /// When darkness was measured.
+    /// Time of the last measurement of dark areas.
     measured: Instant,
-    /// Whose light was measured then, and how it was exposed.
+    /// Key light and exposure of the last measurement.
     measured_eye: Option<(EyeKey, f64)>,
-    /// Nothing of the volume is seen in that light.
+    /// True if nothing of the volume was visible in the last measurement.
     is_empty: bool,
-    /// The last preview that was measured.
+    /// Request of the last preview that was measured.
     last_preview: Option<FrameRequest>,
 }
 
 impl Brightness {
-    /// Nothing is known.
+    /// Starts without any measurement.
     pub(super) fn new() -> Self {
         Self {
             exposures: Exposures::default(),
@@ -42,17 +42,17 @@ impl Brightness {
         }
     }
 
-    /// Forgets everything, as with another volume.
+    /// Discards all measurements, after a change of volume.
     pub(super) fn forget(&mut self) {
         *self = Self { measured: self.measured, ..Self::new() };
     }
 
-    /// Whether the last picture at full quality whose light was measured shows nothing of the volume.
+    /// Returns true if the last measured full-quality picture shows nothing of the volume.
     pub(super) fn is_picture_empty(&self) -> bool {
         self.is_empty
     }
 
-    /// How long to expose a picture; `None` where that is not compensated.
+    /// Returns the exposure factor for a picture; `None` if it is not compensated.
     pub(super) fn exposure(
         &self,
         frame_request: &FrameRequest,
@@ -63,9 +63,9 @@ impl Brightness {
             .then(|| self.exposures.of(kind_of(quality, report)).unwrap_or(1.0) as f32)
     }
 
-    /// The share of a picture at full quality that is nearly black; `None` if it was not measured. Every picture is
-    /// measured that is at rest (`is_at_rest`), others now and then; none whose light is that of the one before, as
-    /// after a change of the background.
+    /// Measures the share of a full-quality picture that is nearly black; `None` if it was not measured. Pictures at
+    /// rest (`is_at_rest`) are always measured, others at intervals; a picture whose light equals that of the one
+    /// before is not, for example after a change of the background.
     pub(super) fn measure_full(
         &mut self,
         scene: &Scene,
@@ -89,8 +89,8 @@ impl Brightness {
         Ok(Some(dark_share(&light, exposure)))
     }
 
-    /// Learns from a preview, and shows it again with the exposure that makes it as bright as the last picture at full
-    /// quality (`settled`).
+    /// Learns from a preview, and displays it again with the exposure that makes it as bright as the last
+    /// full-quality picture (`settled`).
     pub(super) fn measure_preview(
         &mut self,
         scene: &mut Scene,
@@ -102,7 +102,7 @@ impl Brightness {
     ) -> Result<(), GpuError> {
         let [width, height] = request.size;
         let is_small = u64::from(width) * u64::from(height) <= EXPOSED_PIXELS;
-        // What changes more than a movement may change the brightness, and should be seen to.
+        // Changes other than movements may alter the brightness, which should then be visible.
         let moves = settled.is_some_and(|settled| is_movement(settled, &frame_request.looks.left));
         if !(is_compensated(frame_request, quality) && moves && is_small) {
             return Ok(());
@@ -117,12 +117,13 @@ impl Brightness {
     }
 }
 
-/// Whether it is a preview whose brightness is compensated: not of two looks, whose difference counts.
+/// Returns true for previews whose brightness is compensated; comparisons are excluded, since their difference
+/// matters.
 fn is_compensated(frame_request: &FrameRequest, quality: QualityLevel) -> bool {
     quality != QualityLevel::FULL && frame_request.looks.right.is_none()
 }
 
-/// Whether only the camera and the places of lights differ.
+/// Returns true if two looks differ only in the camera and the positions of lights.
 fn is_movement(from: &Settings, to: &Settings) -> bool {
     let mut moved = from.clone();
     moved.camera = to.camera.clone();
@@ -132,12 +133,12 @@ fn is_movement(from: &Settings, to: &Settings) -> bool {
     moved == *to
 }
 
-/// What decides how far the brightness of a preview is off.
+/// Returns the class of a preview, which determines its brightness error.
 fn kind_of(quality: QualityLevel, report: &Report) -> Kind {
     Kind { scale: quality.scale, quick_eye: quality.quick_eye, light_divisor: report.light_divisor }
 }
 
-/// Shows a picture again with another exposure: a display pass.
+/// Displays a picture again with another exposure: a display pass only.
 fn expose(scene: &mut Scene, request: &Request, options: &RenderOptions) -> Result<(), GpuError> {
     let mut job = scene.renderer.begin(&scene.dataset, request.clone(), options)?;
     while job.step()? {}

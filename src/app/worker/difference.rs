@@ -1,18 +1,18 @@
-//! How much two pictures differ.
+//! Difference image of two pictures, and their distance.
 
 use eframe::egui::{Color32, ColorImage};
 
 use crate::gpu::Distance;
 
-/// Differences are shown so many times as bright: one step in eight bits is just seen.
+/// Amplification of the displayed difference: makes one step in eight bits just visible.
 const AMPLIFIED: i32 = 8;
 
-/// What lies between two pictures of one size.
+/// Difference of two pictures of equal size.
 #[derive(Debug, Clone)]
 pub(crate) struct Difference {
-    /// The distance of every channel, amplified.
+    /// Absolute difference of every channel, amplified.
     pub image: ColorImage,
-    /// How large it is.
+    /// Measured distance of the two pictures.
     pub distance: Distance,
 }
 

@@ -1,43 +1,42 @@
-//! Keeps previews as bright as pictures.
+//! Exposure compensation that keeps previews as bright as full-quality pictures.
 //!
-//! A coarse light volume lets light into shadows and a stretched kernel thins material, so that a preview's
-//! mean luminance is off by up to a third. What it is off by is known wherever a preview is followed by a
-//! picture of the same, and hardly changes while something moves: previews are exposed for so much longer
-//! or shorter.
+//! A coarse light volume leaks light into shadows and a stretched kernel thins material, so a preview's mean
+//! luminance is off by up to a third. The error is known wherever a preview was followed by the full-quality picture
+//! of the same request, and hardly changes during a movement: previews are multiplied by the inverse ratio.
 
-/// What decides how far a preview's brightness is off.
+/// Class of previews that share a brightness error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Kind {
-    /// Window pixels per rendered pixel.
+    /// Window pixels per rendered pixel along each axis.
     pub scale: u32,
-    /// Eye pass with the prefiltered kernel.
+    /// True if the eye pass uses the prefiltered kernel.
     pub quick_eye: bool,
-    /// Data voxels per voxel of the coarsest light volume.
+    /// Data voxels per voxel of the coarsest light volume, along each axis.
     pub light_divisor: usize,
 }
 
-/// Exposures are between ½ and 2: beyond that a preview shows something else.
+/// Limits of the exposure factor: beyond them a preview shows different content.
 const LIMITS: (f64, f64) = (0.5, 2.0);
 
-/// What is known of the brightness of previews of one volume.
+/// Learnt exposure factors for the previews of one volume.
 #[derive(Debug, Default)]
 pub(crate) struct Exposures {
     known: Vec<(Kind, f64)>,
-    /// Mean luminance of the last picture at full quality.
+    /// Mean luminance of the last full-quality picture.
     settled: Option<f64>,
-    /// The last preview and its mean luminance.
+    /// Class of the last preview, and its mean luminance.
     last: Option<(Kind, f64)>,
 }
 
 impl Exposures {
-    /// How long to expose a preview; `None` if none of the kind was seen.
+    /// Returns the exposure factor for a class of previews; `None` if none was seen yet.
     pub(crate) fn of(&self, kind: Kind) -> Option<f64> {
         self.known.iter().find(|(known, _)| *known == kind).map(|(_, exposure)| *exposure)
     }
 
-    /// Learns the mean luminance of a preview, as it is without compensation. The first one of a kind is
-    /// taken to be nearly the same as the picture that it follows, so that nothing jumps when a drag begins:
-    /// returns its exposure.
+    /// Learns the uncompensated mean luminance of a preview. The first preview of a class is assumed to be nearly as
+    /// bright as the picture that it follows, so that brightness does not jump when a drag begins: returns its
+    /// exposure factor.
     pub(crate) fn preview(&mut self, kind: Kind, mean: f64) -> Option<f64> {
         self.last = Some((kind, mean));
         if self.of(kind).is_some() {
@@ -48,7 +47,8 @@ impl Exposures {
         Some(exposure)
     }
 
-    /// Learns the mean luminance of a picture at full quality, which may be the same as the last preview's.
+    /// Learns the mean luminance of a full-quality picture; `is_of_last_preview` if it has the last preview's
+    /// request.
     pub(crate) fn settle(&mut self, mean: f64, is_of_last_preview: bool) {
         self.settled = Some(mean);
         let Some((kind, preview)) = self.last.take().filter(|_| is_of_last_preview) else { return };
@@ -58,7 +58,7 @@ impl Exposures {
     }
 }
 
-/// The exposure that makes a preview as bright as a picture; `None` where either is black.
+/// Returns the exposure factor that makes a preview as bright as a picture; `None` if either is black.
 fn ratio(whole: f64, preview: f64) -> Option<f64> {
     let ratio = whole / preview;
     (ratio.is_finite() && ratio > 0.0).then(|| ratio.clamp(LIMITS.0, LIMITS.1))

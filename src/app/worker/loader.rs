@@ -1,4 +1,4 @@
-//! Opens volumes on a thread of their own, up to the first look.
+//! Loader of volumes: opens files on a separate thread, up to the first look.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -20,61 +20,61 @@ use crate::fault::{Place, may_panic};
 use crate::gpu::{Context, GpuError, Renderer, ShaderLibrary, first_look_upright, fitted};
 use crate::model::{SceneAxis, Settings};
 
-/// How a volume is read, where the user has said it.
+/// Options for reading a volume that the user has chosen.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Reading {
-    /// How a file of bare voxels is stored.
+    /// Format of the voxels in a headerless (raw) file.
     pub raw: Option<RawFormat>,
-    /// Which of several volumes is opened, and how much of it.
+    /// Choice among several volumes of a file, and of the portion that is read.
     pub choice: Option<Choice>,
-    /// It may take all memory that is free.
+    /// True if the volume may use all free memory.
     pub takes_all_memory: bool,
-    /// Of a folder, the files that are opened.
+    /// Subset of a folder's files that are opened.
     pub among: Option<Arc<[PathBuf]>>,
 }
 
-/// What is known of a file from earlier times.
+/// Settings of a file that were remembered from earlier sessions.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Known {
-    /// The axis of the scene that points up, unless the file says what does.
+    /// Axis of the scene that points up, unless the file defines one.
     pub up: SceneAxis,
-    /// How it was corrected.
+    /// Corrections that were applied to the volume.
     pub corrected: Option<Remembered>,
 }
 
-/// A volume that is ready to be shown.
+/// Opened volume that is ready to be displayed.
 #[derive(Debug)]
 pub(crate) struct Opened {
-    /// What was asked for: a path or the name of a built-in volume.
+    /// Path of the file, or name of a built-in volume.
     pub source: PathBuf,
-    /// How it was read.
+    /// Options with which the volume was read.
     pub reading: Reading,
-    /// The voxels: with as few averaged as the adapter needs.
+    /// Dataset of the volume, downsampled no more than the adapter requires.
     pub dataset: Dataset,
-    /// How many there were along x, y and z, if the adapter could not hold them.
+    /// Original number of voxels along x, y and z, if the volume was downsampled to fit the adapter.
     pub too_many: Option<[usize; 3]>,
-    /// A renderer that has the volume on the GPU.
+    /// Renderer that has the volume on the GPU.
     pub renderer: Renderer,
-    /// A first look at it.
+    /// Settings of the first look.
     pub settings: Settings,
-    /// What the file was before it was read.
+    /// Size and modification time of the file before it was read.
     pub stamp: FileStamp,
 }
 
-/// How an attempt to open a volume ended.
+/// Result of an attempt to open a volume.
 #[derive(Debug)]
 pub(crate) enum Outcome {
-    /// With a volume.
+    /// The volume was opened.
     Opened(Box<Opened>),
-    /// The user stopped it.
+    /// The user cancelled the attempt.
     Cancelled,
-    /// It is a file of bare voxels, and how these are stored is not known, or not right.
+    /// A file of bare voxels whose format is unknown or does not match.
     NotDescribed { path: PathBuf, why: String, guess: RawGuess },
-    /// It has hardly room, or none, and nobody has said how much of it is to be read.
+    /// The volume barely fits into memory, or does not, and the user must choose a portion of it.
     Weighed { source: PathBuf, reading: Box<Reading>, weighed: Weighed },
-    /// A volume that was open in an earlier window is on the device of this one.
+    /// A volume that was open in an earlier window has been uploaded to the device of this one.
     Shown { renderer: Box<Renderer>, dataset: Dataset },
-    /// With a message: what, and all that is known.
+    /// Loading failed: message in one line, and all details.
     Failed { short: String, details: String },
 }
 
@@ -87,32 +87,32 @@ struct Running {
     work: Work<Outcome>,
 }
 
-/// How far a volume is that is being opened.
+/// Progress of the volume that is being opened.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LoadProgress<'a> {
-    /// What is being opened, and how it is read.
+    /// Path of the volume, and the options for reading it.
     pub source: &'a Path,
     pub reading: &'a Reading,
-    /// What is being done, in words.
+    /// Description of the current phase.
     pub phase: &'static str,
-    /// The share of the phase that is done, where it is known.
+    /// Completed fraction of the phase, 0 to 1, if it is known.
     pub fraction: Option<f32>,
-    /// Bytes of voxels that have been read, and of all that are, where that is the phase.
+    /// Bytes of voxels read so far and in total, during the reading phase.
     pub bytes: Option<[u64; 2]>,
 }
 
-/// Opens one volume at a time; a new request replaces the one before.
+/// Loader that opens one volume at a time; a new request replaces the previous one.
 #[derive(Debug)]
 pub(crate) struct Loader {
     context: Context,
-    /// The pipelines of that device, for every volume's renderer.
+    /// Shader pipelines of the device, shared by the renderers of all volumes.
     shaders: ShaderLibrary,
     options: LoadOptions,
     running: Option<Running>,
     warm_up: WarmUp,
 }
 
-/// The words for each phase, in the status bar.
+/// Names of the phases, for the status bar.
 const PHASES: [&str; 5] = [
     text::opening::READING,
     text::opening::FITTING,
@@ -122,7 +122,7 @@ const PHASES: [&str; 5] = [
 ];
 
 impl Loader {
-    /// A loader for volumes that a device will show. Begins to make its pipelines.
+    /// Creates a loader for volumes to be displayed on a device, and begins to compile its pipelines.
     pub(crate) fn new(
         context: Context,
         options: LoadOptions,
@@ -137,12 +137,12 @@ impl Loader {
         Ok(Self { context, shaders, options, running: None, warm_up })
     }
 
-    /// The pipelines of the device of pictures.
+    /// Returns the shader pipelines of the device that renders pictures.
     pub(crate) fn shaders(&self) -> &ShaderLibrary {
         &self.shaders
     }
 
-    /// Makes pipelines that may be needed later, once; to be called when nothing else is to be done.
+    /// Compiles pipelines that may be needed later, once; to be called when the window is idle.
     pub(crate) fn prepare(&mut self) {
         if self.warm_up.count() < 2
             && let Err(err) = self.warm_up.start(&self.shaders, ShaderLibrary::warm_up_rest)
@@ -151,7 +151,7 @@ impl Loader {
         }
     }
 
-    /// Starts to open a file or a built-in volume, which is corrected and stood up as is known of it.
+    /// Starts to open a file or a built-in volume, with the corrections and the up axis that are remembered for it.
     pub(crate) fn open(
         &mut self,
         source: &Path,
@@ -162,7 +162,7 @@ impl Loader {
         self.cancel();
         let phase = Arc::new(AtomicU8::new(0));
         let mut options = self.options.clone();
-        // As much as is free now.
+        // Limited to the memory that is free now.
         options.memory_budget_bytes = options.memory_budget_bytes.min(memory_budget_bytes());
         let question = Question::default();
         let control = Arc::new(if reading.takes_all_memory {
@@ -194,7 +194,7 @@ impl Loader {
         Ok(())
     }
 
-    /// Shows a volume that has been read already, on this device.
+    /// Displays a volume that is already in memory on this device.
     pub(crate) fn show(&mut self, dataset: Dataset, ctx: &egui::Context) -> Result<(), String> {
         self.cancel();
         let (context, shaders) = (self.context.clone(), self.shaders.clone());
@@ -205,29 +205,29 @@ impl Loader {
             Err(err) => Outcome::Failed { short: text::opening::not_shown(&name), details: err.to_string() },
         };
         let work = Work::start("loader", ctx, task).map_err(text::opening::no_thread)?;
-        // The last phases alone.
+        // Only the last phases remain.
         let (control, phase) = (Arc::new(LoadControl::new()), Arc::new(AtomicU8::new(3)));
         self.running = Some(Running { source, reading: Reading::default(), control, phase, work });
         Ok(())
     }
 
-    /// How files are read.
+    /// Returns the options with which files are read.
     pub(crate) fn options(&self) -> &LoadOptions {
         &self.options
     }
 
-    /// Stops opening; what is open stays.
+    /// Cancels opening; the current volume stays.
     pub(crate) fn cancel(&self) {
         if let Some(running) = &self.running {
             running.control.cancel();
         }
     }
 
-    /// What became of it, once.
+    /// Takes the result, if the attempt has ended; returns it only once.
     pub(crate) fn take(&mut self) -> Option<Outcome> {
         let running = self.running.as_ref()?;
         if running.control.is_cancelled() {
-            // Its thread ends by itself, with the next piece of its work.
+            // Its thread notices the cancellation at the next piece of work and ends.
             self.running = None;
             return Some(Outcome::Cancelled);
         }
@@ -239,12 +239,12 @@ impl Loader {
         Some(outcome)
     }
 
-    /// How far the volume is that is being opened.
+    /// Returns the progress of the volume that is being opened.
     pub(crate) fn progress(&self) -> Option<LoadProgress<'_>> {
         let running = self.running.as_ref()?;
         let phase = usize::from(running.phase.load(Ordering::Relaxed)).min(PHASES.len() - 1);
         let read = running.control.bytes().filter(|_| phase == 0);
-        // When the last byte is there, the values are looked at.
+        // After the last byte has been read, the values are counted.
         let bytes = read.filter(|[done, total]| done < total);
         let phase = if read.is_some() && bytes.is_none() { 2 } else { phase };
         Some(LoadProgress {
@@ -257,10 +257,10 @@ impl Loader {
     }
 }
 
-/// Endings of files that hold bare voxels.
+/// File name extensions of headerless volumes.
 const BARE: [&str; 8] = [".raw", ".raw.gz", ".bin", ".dat", ".vol", ".img", ".bytes", ".u8"];
 
-/// Whether a file could be opened if it were said how it is stored.
+/// Returns an outcome that asks for the voxel format, if the file is headerless and could be opened with it.
 fn not_described(source: &Path, err: &LoadError) -> Option<Outcome> {
     let LoadError::BadInput(explanation) = err else { return None };
     let name = source.to_string_lossy().to_lowercase();
@@ -274,7 +274,7 @@ fn not_described(source: &Path, err: &LoadError) -> Option<Outcome> {
     is_bare.then(|| Outcome::NotDescribed { path, why: explanation.why.clone(), guess })
 }
 
-/// A volume to be opened, and what that takes.
+/// Input of the loader's thread for one volume.
 struct Opening {
     source: PathBuf,
     reading: Reading,
@@ -283,13 +283,13 @@ struct Opening {
     context: Context,
     shaders: ShaderLibrary,
     control: Arc<LoadControl>,
-    /// Why it is not read before somebody has said how much of it.
+    /// Memory estimate that requires a decision of the user before the volume is read.
     question: Question,
-    /// Index of what is being done, in [`PHASES`].
+    /// Index of the current phase in [`PHASES`].
     phase: Arc<AtomicU8>,
 }
 
-/// Opens a volume; of several the first where nobody has said which, of which the user is told.
+/// Opens a volume. Of several, it opens the first unless the user has chosen one, and adds a remark about that.
 fn open_first(source: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
     let options = LoadOptions { choice: options.choice.clone().or_first(), ..options.clone() };
     let volume = data::open(source, &options, control)?;
@@ -300,7 +300,7 @@ fn open_first(source: &Path, options: &LoadOptions, control: &LoadControl) -> Re
     Ok(volume.with_remarks(remarks))
 }
 
-/// A volume as it was corrected the last time, if it is the same.
+/// Applies the remembered corrections to a volume, if it is still the same.
 fn corrected(volume: Volume, known: Option<&Remembered>, stamp: FileStamp) -> Volume {
     let by = known.and_then(|known| known.of(stamp, volume.opened_id()));
     match by.map(|by| volume.corrected(&by)) {
@@ -350,7 +350,7 @@ fn open(opening: Opening) -> Outcome {
         Err(err) => return not_shown(&err),
     };
     let too_many = (volume.dims() != dims).then_some(dims);
-    // It is read in the same way again.
+    // The resulting choice is stored, so that reloading reads the same volume.
     let reading = Reading { choice: Some(volume.held().choice()), ..reading };
     phase.store(2, Ordering::Relaxed);
     let dataset = Dataset::new(corrected(volume, known.corrected.as_ref(), stamp));

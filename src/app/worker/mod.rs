@@ -1,4 +1,4 @@
-//! Threads beside the window: the renderer of its pictures, the loader, and other tasks.
+//! Background threads of the window: the renderer of its pictures, the loader, and other tasks.
 
 mod agenda;
 mod brightness;

@@ -1,56 +1,56 @@
-//! The resolution controller: how coarse a preview must be to keep up with the user.
+//! Quality controller: chooses how coarse a preview must be to keep up with the user.
 //!
-//! Pure arithmetic. It predicts milliseconds from what earlier batches took and chooses the finest
-//! level that fits the frame budget; the render worker carries it out.
+//! Pure arithmetic: it predicts milliseconds from the measured times of earlier batches and chooses the finest level
+//! that fits the frame budget; the render worker carries it out.
 
 use crate::math::SceneSpace;
 use crate::model::{Engine, Kernel, Resolution, Settings, Slabs};
 use crate::plan::preview_slab;
 
-/// Milliseconds of a preview while something moves: a frame at 30 per second.
+/// Time budget of a preview during interaction, in milliseconds: a frame at 30 Hz.
 const BUDGET_MS: f64 = 33.0;
-/// Milliseconds of a frame with a preview on a software adapter, which the window shares.
+/// Time budget of a frame with a preview on a software adapter, in milliseconds; the window shares its processors.
 const SOFTWARE_BUDGET_MS: f64 = 66.0;
-/// Milliseconds that the window itself takes of each frame on a software adapter.
+/// Time that the window itself takes of each frame on a software adapter, in milliseconds.
 const SOFTWARE_WINDOW_MS: f64 = 26.0;
-/// Bands into which a picture is cut on a software adapter, where one may take seconds: between
-/// them the render thread looks whether something else is requested.
+/// Number of bands into which a picture is divided on a software adapter, where one may take seconds: between bands
+/// the render thread checks for new requests.
 const SOFTWARE_BANDS: u32 = 16;
-/// Pixels of a band on a graphics card: far below what driver watchdogs allow.
+/// Pixels per band on a graphics card: far below the limits of driver watchdogs.
 const BAND_PIXELS: u32 = 1 << 18;
 
-/// How a request is rendered.
+/// Level of quality at which a request is rendered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct QualityLevel {
-    /// Window pixels per rendered pixel along an axis.
+    /// Window pixels per rendered pixel along each axis.
     pub scale: u32,
-    /// For light volumes that are not there yet.
+    /// Resolution of light volumes that are not filled yet; `None` for the full one.
     pub coarse: Option<Resolution>,
-    /// Eye pass with the prefiltered kernel.
+    /// True if the eye pass uses the prefiltered kernel.
     pub quick_eye: bool,
-    /// Light pass with the prefiltered kernel.
+    /// True if the light pass uses the prefiltered kernel.
     pub quick_light: bool,
 }
 
 impl QualityLevel {
-    /// What exports show too.
+    /// Full quality, as in exports.
     pub(crate) const FULL: Self = Self { scale: 1, coarse: None, quick_eye: false, quick_light: false };
 
-    /// Pixels to be rendered for a viewport.
+    /// Returns the number of pixels to render for a viewport, along each axis.
     pub(crate) fn size(self, viewport: [u32; 2]) -> [u32; 2] {
         viewport.map(|n| n.div_ceil(self.scale).max(1))
     }
 
-    /// The settings to be rendered for those of a look.
+    /// Returns the settings with which a look is rendered at this level.
     pub(crate) fn settings(self, look: &Settings, scene: &SceneSpace, viewport: [u32; 2]) -> Settings {
         let mut settings = look.clone();
         if self != Self::FULL {
-            // Nobody waits for every single splat while something moves.
+            // The scattering engine is too slow during interaction.
             settings.sampling.engine = Engine::Gather;
         }
         if self.quick_eye {
             settings.sampling.kernel = Kernel::Prefiltered;
-            // Thin parts would show stripes in even ones as thick.
+            // Uniform slabs of that thickness would show stripes in thin parts.
             let slab = settings.mean_slab();
             settings.sampling.slabs = Slabs::Preintegrated;
             settings.sampling.slab = preview_slab(&settings.camera, scene, self.size(viewport), slab);
@@ -62,16 +62,16 @@ impl QualityLevel {
     }
 }
 
-/// Light volumes that a request needs and that are not there.
+/// Light volumes that a request needs and that are not filled yet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Missing {
-    /// How many must be filled.
+    /// Number of volumes that must be filled.
     pub count: usize,
-    /// Whether others can be used as they are.
+    /// True if other volumes can be used as they are.
     pub others: bool,
 }
 
-/// A running estimate, which the first measurement replaces.
+/// Running estimate of a duration; the first measurement replaces the guess.
 #[derive(Debug, Clone, Copy)]
 struct Estimate {
     ms: f64,
@@ -85,7 +85,7 @@ impl Estimate {
 
     fn scale(&mut self, factor: f64) {
         let factor = factor.clamp(0.02, 50.0);
-        // Halfway in the logarithm: a hiccup does not decide, a trend does.
+        // Averages logarithms: an outlier changes little, a trend prevails.
         self.ms = (self.ms * if self.measured { factor.sqrt() } else { factor }).clamp(1e-9, 1e5);
         self.measured = true;
     }
@@ -95,18 +95,18 @@ impl Estimate {
     }
 }
 
-/// Learns what things cost here.
+/// Controller that learns rendering times and chooses quality levels.
 #[derive(Debug, Clone)]
 pub(crate) struct QualityController {
     software: bool,
-    /// Milliseconds per frame that the user asked for.
+    /// Time budget per frame that the user has set, in milliseconds.
     frame_ms: Option<f64>,
-    /// By resolution and by quick kernel.
+    /// Time to fill a light volume, in milliseconds: by resolution (full, half, quarter), then exact or quick kernel.
     light_build: [[Estimate; 2]; 3],
-    /// Milliseconds per pixel of whole pictures: exact and quick, by scale. Neighbouring rays share
-    /// less of what they read in small pictures, whose pixels cost more.
+    /// Milliseconds per pixel of whole pictures: exact or quick kernel, then scale. In small pictures neighbouring
+    /// rays share fewer of their reads, so their pixels cost more.
     eye_pixel: [[Estimate; 3]; 2],
-    /// Exact and quick: a first picture was seen, whose time was that of compiling, too.
+    /// True once a first picture was rendered, exact and quick: the first one's time includes compilation.
     warm: [bool; 2],
 }
 
@@ -123,7 +123,7 @@ fn scale_index(scale: u32) -> usize {
 }
 
 impl QualityController {
-    /// Cautious guesses for an adapter.
+    /// Creates a controller with cautious guesses for an adapter.
     pub(crate) fn new(software: bool) -> Self {
         let slow = if software { 20.0 } else { 1.0 };
         let build = |ms: f64| [Estimate::guess(ms * slow), Estimate::guess(ms * slow * 0.4)];
@@ -137,32 +137,32 @@ impl QualityController {
         }
     }
 
-    /// Forgets what things cost, as with another volume.
+    /// Discards all estimates, after a change of volume.
     pub(crate) fn forget(&mut self) {
         *self = Self { frame_ms: self.frame_ms, ..Self::new(self.software) };
     }
 
-    /// Milliseconds per frame while something moves, instead of what suits the adapter.
+    /// Sets the time budget per frame during interaction, in milliseconds; `None` for the adapter's default.
     pub(crate) fn set_frame_ms(&mut self, frame_ms: Option<f64>) {
         self.frame_ms = frame_ms;
     }
 
-    /// Milliseconds of a preview.
+    /// Returns the time budget of a preview, in milliseconds.
     fn budget_ms(&self) -> f64 {
         let usual = if self.software { SOFTWARE_BUDGET_MS } else { BUDGET_MS };
         let window = if self.software { SOFTWARE_WINDOW_MS } else { 0.0 };
         (self.frame_ms.unwrap_or(usual) - window).max(1.0)
     }
 
-    /// Pieces into which a chunk of the light pass is cut.
+    /// Returns the number of pieces into which a chunk of the light pass is divided.
     pub(crate) fn light_parts(&self, quality: QualityLevel) -> u32 {
-        // Half a chunk of a 256³ volume takes a software adapter some 20 ms.
+        // On a software adapter, half a chunk of a 256³ volume takes about 20 ms.
         if quality == QualityLevel::FULL && self.software { 2 } else { 1 }
     }
 
-    /// Rows of a band of a picture of some size.
+    /// Returns the number of rows per band for a picture of the given size.
     pub(crate) fn rows(&self, quality: QualityLevel, [width, height]: [u32; 2]) -> u32 {
-        // A preview is finished whatever happens.
+        // Previews run to completion, so they need no bands.
         let whole = if self.software && quality == QualityLevel::FULL {
             height.div_ceil(SOFTWARE_BANDS)
         } else {
@@ -171,7 +171,7 @@ impl QualityController {
         whole.min(BAND_PIXELS / width.max(1)).max(1)
     }
 
-    /// Learns what the eye pass of a whole picture took.
+    /// Learns the duration of the eye pass of a whole picture.
     pub(crate) fn learn_picture(&mut self, quality: QualityLevel, pixels: f64, ms: f64) {
         let quick = usize::from(quality.quick_eye);
         let warm = std::mem::replace(&mut self.warm[quick], true);
@@ -182,7 +182,7 @@ impl QualityController {
         let before = self.eye_pixel[quick][at].ms;
         self.eye_pixel[quick][at].observe(ms.max(0.05) / pixels);
         let factor = self.eye_pixel[quick][at].ms / before;
-        // A new view or another transfer function makes pictures of all sizes cheaper or dearer.
+        // A new view or transfer function changes the cost of pictures of all sizes alike.
         for (other, estimate) in self.eye_pixel[quick].iter_mut().enumerate() {
             if other != at {
                 estimate.ms = (estimate.ms * factor).clamp(1e-9, 1e5);
@@ -190,12 +190,13 @@ impl QualityController {
         }
     }
 
-    /// Learns what filling one light volume took in all.
+    /// Learns the total time to fill one light volume.
     pub(crate) fn learn_build(&mut self, quality: QualityLevel, ms: f64) {
         let quick = usize::from(quality.quick_light);
         let at = resolution_index(quality.coarse);
         self.light_build[at][quick].observe(ms.max(0.05));
-        // A resolution that was never tried: eight times the voxels, a little less than the time.
+        // Extrapolation to resolutions that were never tried: eight times the voxels take somewhat less than eight
+        // times as long.
         for finer in (0..at).rev() {
             if !self.light_build[finer][quick].measured {
                 self.light_build[finer][quick].ms = self.light_build[finer + 1][quick].ms * 6.0;
@@ -203,14 +204,14 @@ impl QualityController {
         }
     }
 
-    /// The quality level of a preview: the finest that keeps the frame budget.
+    /// Chooses the quality level of a preview: the finest that keeps the frame budget.
     pub(crate) fn preview(&self, viewport: [u32; 2], missing: Missing) -> QualityLevel {
         let budget = self.budget_ms();
         let pixels = f64::from(viewport[0]) * f64::from(viewport[1]);
         let quick_light = self.software && missing.count > 0 && !missing.others;
         let (mut coarse, mut light_ms) = (None, 0.0);
         if missing.count > 0 {
-            // Up to two thirds of the frame go to the light that moves.
+            // Up to two thirds of the frame are spent on moving lights.
             let room = budget * 0.66;
             for choice in [None, Some(Resolution::Half), Some(Resolution::Quarter)] {
                 coarse = choice;
@@ -230,7 +231,7 @@ impl QualityController {
         let eye_ms = |scale: u32| eye[scale_index(scale)].ms * pixels / f64::from(scale * scale);
         let fits = |scale: u32| eye_ms(scale) + light_ms <= budget;
         let scale = [1, 2].into_iter().find(|&scale| fits(scale)).unwrap_or(4);
-        // A light volume of the full resolution may have been forgotten: then rather a coarse one.
+        // A cached light volume of full resolution may have been evicted: a coarse one is the fallback.
         let fallback = if self.software { Resolution::Quarter } else { Resolution::Half };
         let quick_light = quick_light && coarse.is_some();
         QualityLevel {

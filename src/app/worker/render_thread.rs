@@ -1,4 +1,4 @@
-//! The window's end of the thread that renders its pictures.
+//! Render thread: the window's handle to the thread that renders its pictures.
 
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -16,11 +16,11 @@ use crate::data::Dataset;
 use crate::gpu::{Context, GpuError};
 use crate::model::Settings;
 
-/// The window's end of the thread, which ends with it.
+/// Handle to the render thread, which ends when the handle is dropped.
 pub(crate) struct RenderThread {
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
-    /// How many balances have been asked for.
+    /// Number of balance measurements requested so far.
     measurements: Cell<u64>,
 }
 
@@ -34,7 +34,7 @@ impl Drop for RenderThread {
     fn drop(&mut self) {
         self.shared.mailbox().closed = true;
         self.shared.changed.notify_one();
-        // A driver must not be unloaded while a thread is in it. Panics were caught.
+        // A driver must not be unloaded while a thread executes in it. Panics have been caught.
         if let Some(thread) = self.thread.take() {
             drop(thread.join());
         }
@@ -42,7 +42,7 @@ impl Drop for RenderThread {
 }
 
 impl RenderThread {
-    /// Starts the thread.
+    /// Starts the render thread.
     pub(crate) fn start(context: Context, ctx: egui::Context) -> std::io::Result<Self> {
         let shared = Arc::<Shared>::default();
         let theirs = Arc::clone(&shared);
@@ -56,7 +56,7 @@ impl RenderThread {
         Ok(Self { shared, thread: Some(thread), measurements: Cell::new(0) })
     }
 
-    /// Renders this from now on.
+    /// Replaces the scene, and discards requests and results of the previous one.
     pub(crate) fn set_scene(&self, scene: Scene) {
         let mut mailbox = self.shared.mailbox();
         mailbox.dataset = None;
@@ -65,7 +65,7 @@ impl RenderThread {
         self.shared.changed.notify_one();
     }
 
-    /// Renders another volume from now on, with the renderer that there is.
+    /// Replaces the dataset, keeping the renderer, and discards requests and results of the previous one.
     pub(crate) fn set_dataset(&self, dataset: Dataset) {
         let mut mailbox = self.shared.mailbox();
         (mailbox.dataset, mailbox.frame_request, mailbox.frame) = (Some(dataset), None, None);
@@ -73,14 +73,14 @@ impl RenderThread {
         self.shared.changed.notify_one();
     }
 
-    /// Renders this way from now on.
+    /// Posts a request, which replaces the previous one.
     pub(crate) fn set_request(&self, frame_request: FrameRequest) {
         self.shared.mailbox().frame_request = Some(frame_request);
         self.shared.changed.notify_one();
     }
 
-    /// Measures the balance of a look with the light volumes that are there, when its picture is finished; what was to
-    /// be measured before is not. Returns the number of the measurement.
+    /// Requests the balance of a look, measured with its light volumes once its picture is finished; it replaces a
+    /// pending measurement. Returns the number of the measurement.
     pub(crate) fn measure_balance(&self, settings: &Settings) -> u64 {
         let mut mailbox = self.shared.mailbox();
         self.measurements.set(self.measurements.get() + 1);
@@ -90,7 +90,7 @@ impl RenderThread {
         id
     }
 
-    /// Whether the look is about to change by itself: until then, nothing is drawn at full quality.
+    /// Holds full-quality pictures while `holds`, since the look is about to change automatically.
     pub(crate) fn hold_refinement(&self, holds: bool) {
         let mut mailbox = self.shared.mailbox();
         if mailbox.holds_refinement != holds {
@@ -99,18 +99,19 @@ impl RenderThread {
         }
     }
 
-    /// The balance of a measurement, once.
+    /// Takes the result of a measurement; returns it only once.
     pub(crate) fn take_balance(&self, id: u64) -> Option<Result<f64, GpuError>> {
         let measured = self.shared.mailbox().measured.take_if(|(measured, _)| *measured == id);
         measured.map(|(_, balance)| balance)
     }
 
-    /// What previews may take from now on.
+    /// Sets the time budget of a frame with a preview, in milliseconds.
     pub(crate) fn set_frame_ms(&self, frame_ms: Option<f64>) {
         self.shared.mailbox().frame_ms = frame_ms;
     }
 
-    /// The latest finished picture, once. Waits at most so long for one, or for that of a request.
+    /// Takes the latest finished picture. Waits for at most `longest_wait` until there is one, or one of the request
+    /// `awaited`.
     pub(crate) fn take_frame(&self, awaited: Option<&FrameRequest>, longest_wait: Duration) -> Option<Frame> {
         let is_it = |frame: &Frame| awaited.is_none_or(|awaited| frame.request == *awaited);
         let is_due =
@@ -127,12 +128,12 @@ impl RenderThread {
         frame
     }
 
-    /// What went wrong, once.
+    /// Takes the last error; returns it only once.
     pub(crate) fn take_error(&self) -> Option<GpuError> {
         self.shared.mailbox().error.take()
     }
 
-    /// Figures about the work.
+    /// Returns a copy of the render thread's statistics.
     pub(crate) fn figures(&self) -> Figures {
         self.shared.mailbox().figures.clone()
     }

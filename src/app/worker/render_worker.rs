@@ -1,8 +1,8 @@
-//! What the thread that renders the window's pictures does.
+//! Render worker: renders the window's pictures on the render thread.
 //!
-//! It works on the latest request, one job at a time: a preview at once, full quality when nothing has
-//! changed for a moment. A preview is always finished, so that a hand that never rests sees pictures; a
-//! refinement is dropped as soon as something else is requested.
+//! It works on the latest request, one job at a time: a preview at once, full quality when nothing has changed for a
+//! moment. A preview is always finished, so that a continuous drag shows pictures; a refinement is dropped as soon as
+//! something else is requested.
 
 use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
@@ -21,11 +21,11 @@ use crate::gpu::{Context, GpuError, RenderOptions, Stage, balance_quickly};
 use crate::model::Settings;
 use crate::plan::{FrameKeys, Request};
 
-/// How often a refinement reports how far it is: each time the window is drawn, where the driver is software by the
-/// same processors.
+/// Interval at which a refinement reports progress: each report redraws the window, on the same processors if the
+/// driver is software.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(400);
 
-/// A picture to be made now.
+/// Picture to be rendered next, with its purpose and quality.
 #[derive(Debug, Clone)]
 struct Task {
     frame_request: FrameRequest,
@@ -33,7 +33,7 @@ struct Task {
     quality: QualityLevel,
 }
 
-/// A finished picture of one look.
+/// Finished picture of one look.
 struct Made {
     image: ColorImage,
     dataset: Dataset,
@@ -42,7 +42,7 @@ struct Made {
     total_ms: f64,
 }
 
-/// The thread's own side.
+/// State of the render thread.
 pub(super) struct RenderWorker {
     ctx: egui::Context,
     shared: Arc<Shared>,
@@ -50,7 +50,7 @@ pub(super) struct RenderWorker {
     controller: QualityController,
     brightness: Brightness,
     scene: Option<Scene>,
-    /// The last request that was rendered at full quality: its light volumes are likely there.
+    /// Last request that was rendered at full quality: its light volumes are probably still cached.
     last_full: Option<(Request, FrameKeys)>,
     last_progress: Instant,
 }
@@ -69,7 +69,7 @@ impl RenderWorker {
         }
     }
 
-    /// Renders what is requested until the window closes.
+    /// Renders requests until the window closes or the device is lost.
     pub(super) fn work(&mut self) {
         while let Some((mut scene, purpose, frame_request)) = self.wait_for_work() {
             may_panic(Place::Worker);
@@ -90,7 +90,7 @@ impl RenderWorker {
         }
     }
 
-    /// Waits until something is to be drawn. `None` when the window closed.
+    /// Waits until a picture is due. Returns `None` when the window has closed.
     fn wait_for_work(&mut self) -> Option<(Scene, Purpose, FrameRequest)> {
         let shared = Arc::clone(&self.shared);
         loop {
@@ -121,7 +121,7 @@ impl RenderWorker {
                 Due::WithNews => None,
             };
             let mailbox = shared.mailbox();
-            // Something may have come since it was read.
+            // The mailbox may have changed since it was read.
             if self.agenda.has_news(&mailbox) || mailbox.measurement.is_some() && self.can_measure() {
                 continue;
             }
@@ -134,12 +134,12 @@ impl RenderWorker {
         }
     }
 
-    /// Whether there is time to measure a balance: pictures come first.
+    /// Returns true if a balance can be measured now: pictures have priority.
     fn can_measure(&self) -> bool {
         self.scene.is_some() && self.agenda.is_at_rest()
     }
 
-    /// Measures the balance that the window wants to know: three small pictures with the light volumes that are there.
+    /// Measures the balance requested by the window: three small pictures with the light volumes that are present.
     fn measure_balance(&mut self) {
         if !self.can_measure() {
             return;
@@ -151,7 +151,7 @@ impl RenderWorker {
         self.ctx.request_repaint();
     }
 
-    /// Takes note of what the window requests now.
+    /// Takes new requests and options out of the mailbox.
     fn read_mailbox(&mut self) {
         let mut mailbox = self.shared.mailbox();
         if let Some(scene) = &mailbox.scene {
@@ -161,7 +161,7 @@ impl RenderWorker {
         self.controller.set_frame_ms(mailbox.frame_ms);
     }
 
-    /// Makes the picture that is requested, or both of two that are compared, and publishes it.
+    /// Renders the requested picture, or both pictures of a comparison, and publishes it.
     fn make(
         &mut self,
         scene: &mut Scene,
@@ -186,7 +186,7 @@ impl RenderWorker {
         Ok(())
     }
 
-    /// How a preview is rendered: in full where that takes no more than a display pass.
+    /// Chooses the quality level of a preview: the full one if only a display pass is needed.
     fn preview_quality(&self, scene: &Scene, frame_request: &FrameRequest) -> QualityLevel {
         let options = self.options(QualityLevel::FULL);
         let FrameRequest { looks, size, .. } = frame_request;
@@ -197,14 +197,14 @@ impl RenderWorker {
         if is_drawn(&looks.left) && looks.right.as_ref().is_none_or(is_drawn) {
             return QualityLevel::FULL;
         }
-        // Two pictures have twice the pixels.
+        // A comparison has twice the pixels.
         let [width, height] = *size;
         let pixels = if looks.right.is_some() { [2 * width, height] } else { *size };
         let settled = self.last_full.as_ref().map(|(_, keys)| keys);
         self.controller.preview(pixels, missing(settled, frame_request.keys()))
     }
 
-    /// How the renderer is to go about a quality.
+    /// Returns the renderer's options for a quality level.
     fn options(&self, quality: QualityLevel) -> RenderOptions {
         RenderOptions {
             light_parts: self.controller.light_parts(quality),
@@ -236,7 +236,7 @@ impl RenderWorker {
         loop {
             let stage = job.stage();
             if self.agenda.is_held(*purpose) && matches!(stage, Some(Stage::Eye | Stage::Display)) {
-                // What the volume and lights need is kept.
+                // The products for volume and lights stay cached.
                 self.agenda.prepare(frame_request.clone());
                 self.shared.mailbox().figures.refining = None;
                 return Ok(None);
@@ -283,7 +283,7 @@ impl RenderWorker {
         log::debug!("{quality:?} took {total_ms:.1} ms, of which the light {light_ms:.1} ms");
         let fills: u64 = scene.renderer.light_rebuilds().iter().sum();
         let runs = &scene.renderer.report().runs;
-        // How long a volume takes to be uploaded says nothing of the next picture.
+        // The time to upload a volume does not predict the next picture's.
         if runs.eye > 0 && runs.volume == 0 {
             let pixels = f64::from(request.size[0]) * f64::from(request.size[1]);
             self.controller.learn_picture(*quality, pixels, total_ms - light_ms - around_ms);
@@ -295,7 +295,7 @@ impl RenderWorker {
             self.last_full = Some((request.clone(), FrameKeys::of(&request, &options)));
         }
         if let Some(dataset) = scene.renderer.dataset() {
-            // For the next picture nothing of it must be found again.
+            // Keeps what the renderer computed for the dataset, so that the next picture does not repeat it.
             scene.dataset = dataset.clone();
         }
         let dataset = scene.dataset.clone();
@@ -306,7 +306,7 @@ impl RenderWorker {
         Ok(Some(Made { image, dataset, shows_nothing, request, total_ms }))
     }
 
-    /// Leaves what is complete in the mailbox.
+    /// Puts a finished picture and the statistics into the mailbox.
     fn publish(&mut self, scene: &Scene, task: Task, left: Made, right: Option<Made>) {
         let Task { frame_request, purpose, quality } = task;
         let Made { image, dataset, shows_nothing, request, total_ms } = left;
@@ -337,7 +337,7 @@ impl RenderWorker {
         self.ctx.request_repaint();
     }
 
-    /// Leaves an error in the mailbox.
+    /// Puts an error into the mailbox.
     pub(super) fn report(&self, err: GpuError) {
         self.shared.mailbox().error = Some(err);
         self.shared.finished.notify_one();
@@ -345,7 +345,7 @@ impl RenderWorker {
     }
 }
 
-/// What to ask of the renderer for a look.
+/// Returns the renderer's request for a look at a quality level.
 fn request_of(scene: &Scene, settings: &Settings, size: [u32; 2], quality: QualityLevel) -> Request {
     let volume = scene.dataset.volume();
     Request {
@@ -356,10 +356,10 @@ fn request_of(scene: &Scene, settings: &Settings, size: [u32; 2], quality: Quali
     }
 }
 
-/// Light volumes of full quality that a picture would have to fill; what is open of a sky takes about as long as one, and
-/// light that bounces as four.
+/// Counts the full-quality light volumes that a picture would have to fill; sky visibility counts as one, since it
+/// takes about as long, and multiple scattering as four.
 fn missing(settled: Option<&FrameKeys>, full: &FrameKeys) -> Missing {
-    // The first look has filled them all.
+    // The first look has filled all of them.
     let Some(settled) = settled else { return Missing::default() };
     let lights = full.lights_missing_in(settled);
     let sky = usize::from(full.sky.is_some() && full.sky != settled.sky);

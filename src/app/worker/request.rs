@@ -1,22 +1,22 @@
-//! What the window asks of the thread that renders its pictures.
+//! Requests of the window to the render thread.
 
 use crate::data::{Dataset, Shown, ValueRange, ValueRanges};
 use crate::gpu::{RenderOptions, Renderer};
 use crate::model::Settings;
 use crate::plan::{FrameKeys, Request};
 
-/// One look, or two that are compared.
+/// Single look, or two looks that are compared.
 #[derive(Debug, Clone)]
 pub(in crate::app) struct Looks {
     /// The only look, or the one left of the divider.
     pub left: Settings,
-    /// The look right of the divider.
+    /// Look right of the divider.
     pub right: Option<Settings>,
 }
 
 impl Looks {
-    /// Two looks with densities for the values of both: the volume is uploaded for a range, and would be for each of
-    /// the two in each picture.
+    /// Gives both looks one range of values for densities 0 to 1: the volume is uploaded for a range, and would
+    /// otherwise be uploaded twice per picture.
     fn over_one_range(self, ranges: &ValueRanges) -> Self {
         let Some(right) = &self.right else { return self };
         let (Shown::Range(a), Shown::Range(b)) = (self.left.shown(ranges), right.shown(ranges)) else {
@@ -27,19 +27,19 @@ impl Looks {
     }
 }
 
-/// A picture for the window, or two that are compared. Requests are the same when they need the same products:
-/// names and what is kept do not count.
+/// Request for one picture of the window, or for the two of a comparison. Requests are equal if they need the same
+/// products: names, and kept views and looks, do not count.
 #[derive(Debug, Clone)]
 pub(in crate::app) struct FrameRequest {
-    /// Counts the volumes, so that a picture of an earlier one is not taken for one of this.
+    /// Counter of volumes, which distinguishes pictures of the present volume from those of an earlier one.
     pub generation: u64,
-    /// What is to be seen.
+    /// Look, or two compared looks, to be rendered.
     pub looks: Looks,
-    /// Window pixels.
+    /// Size of the picture, in window pixels.
     pub size: [u32; 2],
-    /// What the picture, or the left one of two, needs at full quality.
+    /// Keys of the products for the picture, or the left one of a comparison, at full quality.
     left_keys: FrameKeys,
-    /// What the right picture needs at full quality.
+    /// Keys of the products for the right picture at full quality.
     right_keys: Option<FrameKeys>,
 }
 
@@ -52,7 +52,7 @@ impl PartialEq for FrameRequest {
 }
 
 impl FrameRequest {
-    /// A request for a volume.
+    /// Creates a request for looks at a volume.
     pub(in crate::app) fn new(generation: u64, dataset: &Dataset, looks: Looks, size: [u32; 2]) -> Self {
         let volume = dataset.volume().id();
         let looks = looks.over_one_range(&volume.ranges);
@@ -64,18 +64,18 @@ impl FrameRequest {
         Self { generation, looks, size, left_keys, right_keys }
     }
 
-    /// What the picture, or the left one of two, needs at full quality.
+    /// Returns the keys of the products for the picture, or the left one of a comparison, at full quality.
     pub(in crate::app) fn keys(&self) -> &FrameKeys {
         &self.left_keys
     }
 }
 
-/// What the thread works on.
+/// Volume and renderer of the render thread.
 #[derive(Debug)]
 pub(in crate::app) struct Scene {
-    /// Of a device of its own.
+    /// Renderer, whose device is separate from the window's.
     pub renderer: Renderer,
-    /// The volume.
+    /// Dataset of the volume.
     pub dataset: Dataset,
 }
 

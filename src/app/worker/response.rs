@@ -1,24 +1,23 @@
-//! How long the user waits for a picture of what was done: from the frame of the window that read the input to
-//! the one that shows its effect.
+//! Response times: from the window's frame that read an input to the frame that shows its effect.
 
 use std::collections::VecDeque;
 use std::time::Instant;
 
-/// Requests without an answer beyond so many are forgotten: 64 frames are more than a second.
+/// Maximum number of unanswered requests that are remembered: 64 frames are more than a second.
 const MOST_OPEN: usize = 64;
 
-/// Figures about answers to input.
+/// Statistics of response times.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(in crate::app) struct Response {
-    /// Answers so far.
+    /// Number of answered requests.
     pub count: u32,
-    /// How long they took.
+    /// Mean response time, in milliseconds.
     pub mean_ms: f64,
-    /// How long the slowest took.
+    /// Longest response time, in milliseconds.
     pub worst_ms: f64,
 }
 
-/// What was requested and is not seen yet, the oldest first.
+/// Requests whose effect is not yet on screen, the oldest first.
 #[derive(Debug)]
 pub(crate) struct Waiting<T> {
     open: VecDeque<(T, Instant)>,
@@ -32,13 +31,13 @@ impl<T> Default for Waiting<T> {
 }
 
 impl<T: PartialEq> Waiting<T> {
-    /// The user requests something else now.
+    /// Records a new request.
     pub(crate) fn ask(&mut self, request: T, now: Instant) {
         self.open.truncate(MOST_OPEN - 1);
         self.open.push_back((request, now));
     }
 
-    /// A request is answered on screen; and with it, those before.
+    /// Records that the picture of a request is on screen, which answers the earlier requests as well.
     pub(crate) fn answer(&mut self, shown: &T, now: Instant) {
         let Some(at) = self.open.iter().position(|(request, _)| request == shown) else { return };
         for (_, asked) in self.open.drain(..=at) {
@@ -50,12 +49,12 @@ impl<T: PartialEq> Waiting<T> {
         }
     }
 
-    /// All answers so far.
+    /// Returns the statistics of all answers so far.
     pub(crate) fn answers(&self) -> Response {
         self.answers
     }
 
-    /// Forgets everything, as with another volume.
+    /// Discards all records, after a change of volume.
     pub(crate) fn clear(&mut self) {
         *self = Self::default();
     }

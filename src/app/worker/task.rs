@@ -1,4 +1,4 @@
-//! Work that would keep the window waiting: a named thread whose result comes by channel.
+//! Background tasks: work on a named thread that would block the window, with the result in a channel.
 
 use std::any::Any;
 use std::io;
@@ -11,13 +11,13 @@ use eframe::egui;
 
 use crate::app::text;
 
-/// How many tasks of this process run.
+/// Number of running tasks in this process.
 static RUNNING: Mutex<usize> = Mutex::new(0);
 
-/// One of them has ended.
+/// Signalled whenever a task has ended.
 static ENDED: Condvar = Condvar::new();
 
-/// Counts a task from its beginning to its end, however that comes.
+/// Guard that counts a task as running until it is dropped, after a panic too.
 struct Counted;
 
 impl Counted {
@@ -34,21 +34,21 @@ impl Drop for Counted {
     }
 }
 
-/// Waits until no task runs, but not for longer than that: a graphics driver must not be unloaded while a thread is
-/// in it.
+/// Waits until no task runs, at most for `longest`: a graphics driver must not be unloaded while a thread executes in
+/// it.
 pub(crate) fn wait_for_all(longest: Duration) {
     let running = RUNNING.lock().unwrap_or_else(PoisonError::into_inner);
     drop(ENDED.wait_timeout_while(running, longest, |running| *running > 0));
 }
 
-/// A task on its own thread. Dropping this forgets the result, so a late one replaces nothing.
+/// Handle to a task on its own thread. Dropping it discards the result, so that a late one replaces nothing.
 #[derive(Debug)]
 pub(crate) struct Work<T> {
     receiver: mpsc::Receiver<Result<T, String>>,
 }
 
 impl<T: Send + 'static> Work<T> {
-    /// Runs a task on a thread of that name; the window is woken when it is done.
+    /// Runs a task on a thread with the given name; the window is repainted when it has ended.
     pub(crate) fn start(
         name: &str,
         ctx: &egui::Context,
@@ -60,14 +60,14 @@ impl<T: Send + 'static> Work<T> {
         std::thread::Builder::new().name(name.to_owned()).spawn(move || {
             let _counted = counted;
             let result = catch_unwind(AssertUnwindSafe(task)).map_err(|panic| panic_message(&*panic));
-            // Nobody waits any more when the receiver is gone.
+            // If the receiver was dropped, the result is discarded.
             drop(sender.send(result));
             ctx.request_repaint();
         })?;
         Ok(Self { receiver })
     }
 
-    /// The result, once; an error says how the task panicked.
+    /// Takes the result, once; an error contains the message of a panic.
     pub(crate) fn take(&self) -> Option<Result<T, String>> {
         match self.receiver.try_recv() {
             Ok(result) => Some(result),
@@ -77,7 +77,7 @@ impl<T: Send + 'static> Work<T> {
     }
 }
 
-/// What a panic said.
+/// Returns the message of a panic.
 pub(crate) fn panic_message(panic: &(dyn Any + Send)) -> String {
     let said = panic.downcast_ref::<&str>().copied();
     said.or_else(|| panic.downcast_ref::<String>().map(String::as_str))

@@ -1,47 +1,49 @@
-//! What a volume takes of the memory and of the graphics adapter, before it is read, and how much of it has room.
+//! Memory estimate of a volume before it is read: its needs in main memory and on the graphics adapter, and portions
+//! that fit.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::data::load::{LoadControl, Portion, Region, Size, Stretch, Thinning};
 use crate::gpu::{Context, bytes_with_one_light, held_of};
 
-/// Steps, and edges of blocks, that are offered: an eighth of the voxels each time. More would leave hardly anything to see.
+/// Strides and block edges that are offered: each leaves an eighth of the previous voxels. Larger ones would leave
+/// hardly anything to see.
 const STEPS: [usize; 6] = [2, 4, 8, 16, 32, 64];
 
-/// What there is for a volume.
+/// Memory available for a volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Room {
-    /// Bytes of memory that may be taken without a question: three quarters of those that are free.
+    /// Bytes of main memory that may be used without asking the user: three quarters of the free ones.
     pub budget_bytes: u64,
-    /// Voxels along x, y and z of what the adapter would show of all of it.
+    /// Voxels along x, y and z that the adapter would hold of the whole volume.
     pub held: [usize; 3],
-    /// Whether the adapter takes its memory from the same.
+    /// True if the adapter uses main memory too.
     pub is_shared: bool,
 }
 
-/// How a volume, or a portion of it, fits.
+/// Degree to which a volume, or a portion of it, fits into memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Fit {
-    /// Not into the memory.
+    /// It does not fit into main memory.
     No,
-    /// It would be shown with blocks averaged, because the adapter cannot hold more.
+    /// It fits after block averaging, since the adapter cannot hold all voxels.
     Averaged,
-    /// It takes most of the memory that is free.
+    /// It takes most of the free memory.
     Tight,
-    /// Well.
+    /// It fits with memory to spare.
     Well,
 }
 
-/// A volume that is not read before the user has said how much of it.
+/// Memory estimate of a volume that needs a decision of the user before it is read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Weighed {
-    /// What the file holds.
+    /// Dimensions and voxel type of the file.
     pub size: Size,
-    /// What there is for it.
+    /// Memory available for the volume.
     pub room: Room,
 }
 
-/// What there is to ask of a volume, once its header has been read.
+/// Shared cell for the memory estimate that the user must decide on, set once the header has been read.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Question(Arc<Mutex<Option<Weighed>>>);
 
@@ -50,16 +52,17 @@ impl Question {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(weighed);
     }
 
-    /// What there is to ask, once.
+    /// Takes the estimate, if there is one; returns it only once.
     pub(crate) fn take(&self) -> Option<Weighed> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 }
 
-/// A control that lets volumes pass that have room in memory and on the adapter, and keeps what there is to ask of others.
+/// Returns a load control that admits volumes which fit into memory and on the adapter, and stores the estimate of
+/// others in `question`.
 pub(crate) fn weighing(context: Context, budget_bytes: u64, question: Question) -> LoadControl {
     LoadControl::weighing(move |size| {
-        // A device that is lost is spoken of when the volume is shown.
+        // A lost device is reported when the volume is displayed.
         let held = held_of(&context, size.dims, size.voxel_type).unwrap_or(size.dims);
         let room = Room { budget_bytes, held, is_shared: context.is_software() };
         let weighed = Weighed { size: *size, room };
@@ -72,12 +75,12 @@ pub(crate) fn weighing(context: Context, budget_bytes: u64, question: Question) 
 }
 
 impl Room {
-    /// Bytes that are free.
+    /// Bytes of free memory, of which the budget is three quarters.
     pub(crate) fn free_bytes(&self) -> u64 {
         self.budget_bytes / 3 * 4
     }
 
-    /// Whether the adapter holds so many voxels.
+    /// Returns true if the adapter can hold a volume of these dimensions.
     fn adapter_holds(&self, size: &Size, dims: [usize; 3]) -> bool {
         let count = |dims: [usize; 3]| dims.into_iter().fold(1usize, usize::saturating_mul);
         let is_short = |axis: usize| self.held[axis] == size.dims[axis] || dims[axis] <= self.held[axis];
@@ -86,16 +89,16 @@ impl Room {
 }
 
 impl Weighed {
-    /// Bytes of memory that a portion takes, and of the adapter's; nothing where it reaches beyond the grid.
+    /// Returns the bytes that a portion needs in main memory and on the adapter; `None` if it exceeds the grid.
     pub(crate) fn needs(&self, portion: &Portion) -> Option<[u64; 2]> {
         Some([self.size.host_bytes(portion)?, bytes_with_one_light(self.size.dims_of(portion)?)])
     }
 
-    /// How a portion fits; nothing where it reaches beyond the grid.
+    /// Returns how well a portion fits; `None` if it exceeds the grid.
     pub(crate) fn fit(&self, portion: &Portion) -> Option<Fit> {
         let [host, adapter] = self.needs(portion)?;
         let is_held = self.room.adapter_holds(&self.size, self.size.dims_of(portion)?);
-        // What is averaged for the adapter takes as much of it as that holds.
+        // A volume averaged for the adapter takes as much as the adapter holds.
         let taken = if is_held { adapter } else { bytes_with_one_light(self.room.held) };
         let needed = if self.room.is_shared { host.saturating_add(taken) } else { host };
         Some(if needed > self.room.free_bytes() {
@@ -109,20 +112,20 @@ impl Weighed {
         })
     }
 
-    /// Whether all of it is read without a question.
+    /// Returns true if the whole volume is read without asking the user.
     pub(crate) fn is_well(&self) -> bool {
         self.fit(&Portion::default()) == Some(Fit::Well)
     }
 
-    /// The most voxels of a kind of thinning that have room.
+    /// Returns the finest portion of a kind of thinning that fits well; `None` if none does.
     pub(crate) fn thinned(&self, thinning: fn(usize) -> Thinning) -> Option<Portion> {
         let portions = STEPS.map(|step| Portion { region: None, thinning: thinning(step) });
         portions.into_iter().find(|portion| self.fit(portion) == Some(Fit::Well))
     }
 
-    /// The middle of it, as much as has room.
+    /// Returns the largest central region that fits well.
     pub(crate) fn middle(&self) -> Region {
-        // A box of half the voxels each time: a region of few always has room.
+        // Each box has half the voxels of the one before; regions with few voxels always fit.
         let shares = (0..40).map(|halvings| 0.5f64.powf(f64::from(halvings) / 3.0));
         let boxes = shares.map(|share| {
             Region(self.size.dims.map(|n| {
@@ -157,7 +160,7 @@ mod tests {
 
     #[test]
     fn memory_and_adapter_are_both_weighed() {
-        // 512³ voxels of two bytes are 256 MiB, and what is found of their bricks 38; on the adapter they take 804.
+        // 512³ voxels of two bytes are 256 MiB, and the bricks' bounds 38 MiB; on the adapter they take 804 MiB.
         assert_eq!(whole(&weighed(300, [512; 3], false)), Fit::Well);
         assert_eq!(whole(&weighed(290, [512; 3], false)), Fit::Tight);
         assert_eq!(whole(&weighed(200, [512; 3], false)), Fit::No);
@@ -170,7 +173,7 @@ mod tests {
     fn as_much_is_offered_as_has_room() {
         let little = weighed(60, [512; 3], false);
         assert_eq!(little.thinned(Thinning::Every), Some(Portion::every(2)));
-        // Means of 2³ take two times 32 MiB, and slices.
+        // Averages of 2³ blocks take two times 32 MiB, plus slices.
         assert_eq!(little.thinned(Thinning::Average), Some(Portion::average(4)));
         assert_eq!(weighed(300, [128; 3], false).thinned(Thinning::Every), Some(Portion::every(4)));
         assert_eq!(weighed(0, [512; 3], false).thinned(Thinning::Every), None);

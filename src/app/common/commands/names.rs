@@ -1,4 +1,4 @@
-//! What commands are called, and by what else they are found.
+//! Names of commands, and further words by which they are found.
 
 use std::borrow::Cow;
 
@@ -8,7 +8,7 @@ use crate::app::text;
 use crate::model::{COLOR_MAPS, ObjectTurn, SceneAxis};
 
 impl Command {
-    /// What it is called while an axis of the scene points up: that axis is in the names of some.
+    /// Returns the name while this axis of the scene points up; the names of standard views depend on it.
     pub(crate) fn label_with(&self, up: SceneAxis) -> Cow<'static, str> {
         match self {
             Self::LookFrom(view) => text::commands::look_from(view.name(up)).into(),
@@ -16,7 +16,7 @@ impl Command {
         }
     }
 
-    /// Words by which it is found besides those of its name, and of the synonyms that the palette knows.
+    /// Returns search words in addition to the name and to the synonyms of the palette.
     pub(crate) fn search_words(&self) -> &'static str {
         match self {
             Self::Reveal(place) => words(*place),
@@ -26,7 +26,7 @@ impl Command {
         }
     }
 
-    /// What help calls it.
+    /// Returns the name of the command for menus and help.
     pub(crate) fn label(&self) -> Cow<'static, str> {
         let label = match self {
             Self::LookFrom(view) => {

@@ -1,4 +1,4 @@
-//! Tests of pacing: what comes in one frame, and a context in which widgets are pressed and fields are typed in.
+//! Tests of input pacing: the split of events into frames, and a context with widgets and text fields.
 
 use eframe::egui::{self, Event, Key, Modifiers, PointerButton, Pos2, Rect, Sense, pos2, vec2};
 
@@ -12,12 +12,12 @@ fn key_with(key: Key, modifiers: Modifiers, pressed: bool) -> Event {
     Event::Key { key, physical_key: None, pressed, repeat: false, modifiers }
 }
 
-/// A key that is struck: down and up.
+/// Events of a key stroke: press and release.
 fn stroke(key: Key) -> Vec<Event> {
     vec![key_with(key, Modifiers::NONE, true), key_with(key, Modifiers::NONE, false)]
 }
 
-/// A word as a keyboard types it.
+/// Events of a word typed on a keyboard.
 fn typed(word: &str) -> Vec<Event> {
     let letter = |sign: char| {
         let key = Key::from_name(&sign.to_uppercase().to_string()).unwrap();
@@ -27,7 +27,7 @@ fn typed(word: &str) -> Vec<Event> {
     word.chars().flat_map(letter).collect()
 }
 
-/// The frames into which events are cut that came in one.
+/// Splits events that have arrived in one frame into paced frames.
 fn frames(events: Vec<Event>, is_typing: bool) -> Vec<Vec<Event>> {
     let mut pacing = InputPacing::default();
     let mut frames = vec![pacing.next_frame(events, is_typing)];
@@ -44,7 +44,7 @@ fn is_press(event: &Event) -> bool {
 const HANDLE: Pos2 = pos2(20.0, 20.0);
 const FAR: Pos2 = pos2(150.0, 120.0);
 
-/// A handle that is grabbed and thrown within one frame.
+/// Events of a handle that is grabbed and thrown within one frame.
 fn flick() -> Vec<Event> {
     let mut events = vec![Event::PointerMoved(HANDLE), button(HANDLE, true)];
     events.extend([pos2(40.0, 35.0), pos2(90.0, 80.0), FAR].map(Event::PointerMoved));
@@ -89,8 +89,8 @@ fn text_after_a_command_waits_for_the_window_that_it_opens() {
     let open = vec![key_with(Key::L, Modifiers::COMMAND, true), key_with(Key::L, Modifiers::COMMAND, false)];
     let frames = frames([open.clone(), typed("a")].concat(), false);
     assert_eq!(frames[..2], [open[..1].to_vec(), open[1..].to_vec()]);
-    // What is typed where no field has the focus are commands: a letter comes with its text, or another field would get
-    // that.
+    // Without a focused field, typed letters are commands: each comes with its text, or another field would get the
+    // text.
     assert_eq!(frames[2], typed("a")[..2]);
 }
 
@@ -121,7 +121,7 @@ fn what_comes_slowly_does_not_wait() {
     }
 }
 
-/// A context with pacing, and the frames that it asks for.
+/// Window context with input pacing, in virtual time.
 struct Window {
     ctx: egui::Context,
     time_s: f64,
@@ -134,7 +134,7 @@ impl Window {
         Self { ctx, time_s: 0.0 }
     }
 
-    /// Runs frames of 0.3 s: the first with these events, then as many as they need.
+    /// Runs 20 frames of 0.3 s, the first with these events.
     fn run(&mut self, events: Vec<Event>, mut add: impl FnMut(&mut egui::Ui)) {
         let mut events = Some(events);
         for _ in 0..20 {

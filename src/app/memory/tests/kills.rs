@@ -1,4 +1,6 @@
-//! Processes that are killed while a window's files are written: what was said to be kept is kept.
+//! Crash tests: processes are killed while they write a window's files.
+//!
+//! Nothing that was reported as written may be lost.
 
 use std::fs;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
@@ -11,11 +13,11 @@ use crate::app::shell::session::Session;
 use crate::data::load::Choice;
 use crate::model::{Record, VolumeRecord};
 
-/// Where the process writes that is to be killed; it is this test itself, once more.
+/// Environment variable with the folder of the process to be killed, which is this test itself.
 const FOLDER: &str = "CHIAROSCURO_TEST_KILLED_IN";
 
-/// Whatever a window writes, again and again: its look, what was opened, a session and a preset. A number goes to
-/// standard output when all that holds it is written.
+/// Writes a window's files again and again: its look, recent files, a session and a preset. Prints a number to
+/// standard output when all files that hold it are written.
 fn write_until_killed(folder: &Path) -> ! {
     let mut memory = remember(folder);
     let mut session = None;
@@ -30,13 +32,13 @@ fn write_until_killed(folder: &Path) -> ! {
             let volume = VolumeRecord::new(volume, 7, Some(folder));
             Session::save(&mut session, &folder.join(name), &settings, Some(&volume)).unwrap();
         }
-        // Unlike `println`, this is not kept back by the test.
+        // Unlike `println`, this is not captured by the test.
         writeln!(std::io::stdout(), "kept {gain}").unwrap();
     }
     unreachable!("it is killed before it runs out of numbers")
 }
 
-/// Starts a writer and kills it when it has written for a while; the last number that it said.
+/// Starts a writer and kills it after a while; returns the last number that it printed.
 fn kill_one(folder: &Path, after: Duration) -> u32 {
     let mut child = Command::new(std::env::current_exe().unwrap())
         .args(["--exact", "--nocapture"])
@@ -68,16 +70,16 @@ fn kill_one(folder: &Path, after: Duration) -> u32 {
 fn kills(count: u32) {
     let folder = tempfile::tempdir().unwrap();
     for at in 0..count {
-        // Somewhere in what takes a few milliseconds.
+        // At varying times within the milliseconds that one round takes.
         let kept = f64::from(kill_one(folder.path(), Duration::from_micros(u64::from(at) * 7919 % 20_000)));
         let is_kept = |path: &Path| {
             let found = gain_of(path) * 1000.0;
-            // What was being written may be there already.
+            // The write in progress may have been completed.
             assert!((-0.5..1.5).contains(&(found - kept)), "{}: {found} not {kept}", path.display());
         };
         is_kept(&folder.path().join("session.json"));
         is_kept(&folder.path().join("preset.json"));
-        // There is one from the second save on.
+        // A backup exists from the second save on.
         let backups: &[_] = if at > 0 || kept > 2.0 { &["session.json.bak", "preset.json.bak"] } else { &[] };
         for backup in backups {
             let text = fs::read_to_string(folder.path().join(backup)).unwrap();

@@ -1,4 +1,4 @@
-//! Tests of what is remembered.
+//! Tests of the state that outlives a run.
 
 use std::fs;
 use std::path::Path;
@@ -14,7 +14,7 @@ pub(super) fn remember(folder: &Path) -> Memory {
     Memory::new(Some(folder), &egui::Context::default())
 }
 
-/// A look that can be told from others.
+/// Look that is recognised by its gain.
 pub(super) fn look(gain: f64) -> Settings {
     let mut settings = Settings::default();
     settings.shadows.gain = gain;
@@ -35,7 +35,7 @@ fn wait_until(what: &str, condition: impl Fn() -> bool) -> Duration {
     begin.elapsed()
 }
 
-/// As a process that is killed: nothing is tidied up, and the system takes the lock away.
+/// Simulates a killed process: no clean-up is done, and the system releases the lock.
 fn kill(memory: Memory) {
     let Memory { keeper, run, .. } = memory;
     drop(keeper);
@@ -44,7 +44,7 @@ fn kill(memory: Memory) {
     fs::File::create(look.with_extension("lock")).unwrap();
 }
 
-/// The files that were opened.
+/// Paths of the recent files.
 fn paths(memory: &Memory) -> Vec<PathBuf> {
     memory.recent().iter().map(|file| file.path.clone()).collect()
 }
@@ -58,7 +58,7 @@ fn files_are_remembered_by_all_windows() {
         memory.opened(Path::new(file), &Choice::default());
     }
     let second = Choice { frame: Some(1), ..Choice::default() };
-    // Another window has begun before, and does not know of these.
+    // Another window that began earlier does not know these files.
     let mut other = remember(folder.path());
     drop(memory);
     other.opened(Path::new("/c.nrrd"), &second);
@@ -75,7 +75,7 @@ fn files_are_remembered_by_all_windows() {
     assert_eq!(remember(folder.path()).recent().len(), recent::MOST);
 }
 
-/// Names on Unix are bytes; not all are text, and some of those look like what is written in their place.
+/// Names on Unix are bytes: not all are valid text, and some look like the encoding of others.
 #[cfg(unix)]
 #[test]
 fn files_whose_names_are_no_text_are_remembered() {
@@ -109,7 +109,7 @@ fn files_stand_as_those_of_their_folder_did() {
         [a, b, other].map(|file| memory.up_of(file)),
         [SceneAxis::MinusY, SceneAxis::MinusY, SceneAxis::PlusZ]
     );
-    // Another window has begun before, and does not know of these.
+    // Another window that began earlier does not know these folders.
     let mut second = remember(folder.path());
     drop(memory);
     second.stood(other, SceneAxis::PlusY);
@@ -121,7 +121,7 @@ fn files_stand_as_those_of_their_folder_did() {
     drop(memory);
     let mut memory = remember(folder.path());
     assert_eq!(memory.up_of(a), SceneAxis::PlusZ, "what was chosen last");
-    // There may be many folders; the oldest goes.
+    // The number of folders is limited; the oldest one goes.
     for at in 0..2 * standing::MOST {
         memory.stood(Path::new(&format!("/{at}/a.nrrd")), SceneAxis::PlusX);
     }
@@ -156,12 +156,12 @@ fn files_are_corrected_as_they_were() {
     drop(memory);
     let mut memory = remember(folder.path());
     let known = memory.corrections_of(&file).unwrap();
-    // Of a file that was not touched, or that holds the same all the same; of nothing else at its place.
+    // For an unmodified file, or one that holds the same volume nevertheless; not for another file at its path.
     assert_eq!((known.of(stamp, 8), known.of(no_stamp, 7)), (Some(wide), Some(wide)));
     fs::write(&file, "other voxels").unwrap();
     assert_eq!(known.of(FileStamp::of(&file), 8), None);
     assert_eq!(memory.corrections_of(&other).unwrap().of(no_stamp, 8), None);
-    // What the file says need not be remembered.
+    // The absence of corrections need not be remembered.
     memory.corrected(&file, stamp, 7, Corrections::default());
     assert!(memory.corrections_of(&file).is_none());
     for at in 0..2 * corrected::MOST {
@@ -179,7 +179,7 @@ fn files_are_corrected_as_they_were() {
     assert!(memory.corrected.is_empty() && memory.take_notices().len() == 1, "put aside, and said");
 }
 
-/// A change is on the disk soon, though nothing happens after it: no frame, no further change.
+/// Checks that a change is written soon, though no frame or further change follows.
 #[test]
 fn the_last_change_is_kept_within_two_seconds() {
     let folder = tempfile::tempdir().unwrap();
@@ -201,7 +201,7 @@ fn looks_of_runs_that_were_cut_off_are_offered_until_the_user_knows() {
     memory.keep(&look(2.0), Path::new("/data/tooth.nrrd"), 7, &Choice::default());
     memory.show(Arc::new(ColorImage::filled([40, 20], egui::Color32::RED)));
     kill(memory);
-    // Starts and ends do not take it away.
+    // Starts and ends of other runs do not remove the look.
     for _ in 0..3 {
         let memory = remember(folder.path());
         let [run] = memory.earlier() else { panic!("{:?}", memory.earlier()) };
@@ -306,14 +306,14 @@ fn damaged_files_are_put_aside_and_said_once() {
 fn what_cannot_be_kept_is_said() {
     let folder = tempfile::tempdir().unwrap();
     let mut memory = remember(folder.path());
-    // Nothing can be written where there is no folder.
+    // Nothing can be written without the folder.
     fs::remove_dir_all(folder.path().join("runs")).unwrap();
     memory.keep(&look(2.0), Path::new("builtin:chair"), 7, &Choice::default());
     wait_until("the failure is known", || memory.keeper.as_ref().unwrap().failure().is_some());
     assert_eq!(memory.take_notices().len(), 1);
     assert!(memory.take_notices().is_empty(), "once");
     fs::create_dir(folder.path().join("runs")).unwrap();
-    // By itself: what was not written is still due.
+    // Retried automatically: the look is still pending.
     let file = memory.run.as_ref().unwrap().look.clone();
     wait_until("the look is kept after all", || file.exists());
     let mut memory = Memory::new(Some(&folder.path().join("runs/no.txt/x")), &egui::Context::default());

@@ -1,4 +1,4 @@
-//! The part of the section "Data" that corrects what the file says.
+//! Corrections of a volume's metadata, a part of the section "Data".
 
 use eframe::egui::{self, DragValue, Ui};
 
@@ -11,17 +11,17 @@ use crate::data::{
 };
 use crate::model::Settings;
 
-/// Share of a number by which a point of a drag moves it: 200 points for as much again.
+/// Share of a number by which a drag of one point changes it: 200 points double it.
 const SPEED: f64 = 1.0 / 200.0;
 
-/// Width of a distance, three of which stand in a row.
+/// Width of a spacing field, in points; three of them fit in a row.
 const DISTANCE_WIDTH: f32 = 48.0;
 
-/// Width of a list.
+/// Width of a drop-down list, in points.
 const LIST_WIDTH: f32 = 120.0;
 
-/// Shows the part. What is edited counts when the pointer lets go, and a number when it is typed: each is one step, and the
-/// volume is made anew once.
+/// Shows the corrections. An edit is applied when the pointer is released or a number has been typed: it is one undo
+/// step, and the volume is recomputed once.
 pub(super) fn show(ui: &mut Ui, settings: &mut Settings, volume: &VolumeFacts) {
     let header = egui::CollapsingHeader::new(text::corrections::TITLE).id_salt("corrections");
     let opens = reveal::opens(ui.ctx(), text::sections::DATA, true);
@@ -61,7 +61,7 @@ fn rows(ui: &mut Ui, by: &mut Corrections, volume: &Volume) {
     });
 }
 
-/// A row that says what the file does, and puts back what it says.
+/// Shows a row whose tooltip states the value in the file; returns true if the reset button was clicked.
 fn file_row(
     ui: &mut Ui,
     named: Named,
@@ -102,7 +102,7 @@ fn spacing(ui: &mut Ui, by: &mut Corrections, opened: &Volume) {
     }
 }
 
-/// A list of choices, the first of which leaves what the file says.
+/// Shows a drop-down list of choices, the first of which keeps the value in the file.
 fn list<T: PartialEq + Copy>(ui: &mut Ui, named: Named, tip: &str, chosen: &mut T, options: &[(T, String)]) {
     let shown = options.iter().find(|(option, _)| option == chosen).map_or("", |(_, name)| name);
     let combo = egui::ComboBox::from_id_salt(named.name).selected_text(shown).width(LIST_WIDTH);
@@ -179,7 +179,8 @@ fn orientation(ui: &mut Ui, by: &mut Corrections, opened: &Volume) {
 fn padding(ui: &mut Ui, by: &mut Corrections, opened: &Volume) {
     let in_file = opened.padding_value();
     let said = in_file.map_or_else(|| text::corrections::NO_PADDING.to_owned(), short);
-    // Where a value is typed first: what the file declares, or the lowest, which is what usually is around things.
+    // Initial value of the typed padding: the one the file declares, or the lowest value, which usually surrounds
+    // objects.
     let first = in_file.unwrap_or_else(|| opened.value_range().low);
     let typed = match by.padding_value {
         PaddingValue::Value(value) => value,

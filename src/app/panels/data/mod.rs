@@ -1,4 +1,5 @@
-//! Section "Data": what the volume is, and the length to which opacities refer.
+//! Section "Data" of the side panel: facts about the volume, its corrections, and the length to which opacities
+//! refer.
 
 mod corrections;
 mod range;
@@ -15,10 +16,10 @@ use crate::app::text::{self, Named};
 use crate::data::{KindName, ValueRange, plain};
 use crate::model::{Length, Settings};
 
-/// Characters of a path that are laid out, which is then cut to the width that there is.
+/// Longest part of a path that is laid out, in characters; it is then cut to the available width.
 const LONGEST_PATH: usize = 4096;
 
-/// Shows the section.
+/// Shows the section "Data" of the side panel.
 pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
     let Some(volume) = panels.volume else {
         ui.label(text::data::NOTHING_OPEN);
@@ -66,7 +67,7 @@ fn facts(ui: &mut Ui, volume: &VolumeFacts) {
     }
 }
 
-/// The first look, for another kind of data.
+/// Row that chooses the kind of data for which the first look is made.
 fn treatment(ui: &mut Ui, treated_as: Option<KindName>, commands: &mut Vec<Command>) {
     let named = text::data::TREAT_AS;
     row(ui, named, |ui| {
@@ -86,7 +87,7 @@ fn treatment(ui: &mut Ui, treated_as: Option<KindName>, commands: &mut Vec<Comma
     });
 }
 
-/// Fewer voxels, for quicker pictures and less memory: the volume is read again.
+/// Row that subsamples the volume, for faster pictures and less memory: the file is read again.
 fn thinning(ui: &mut Ui, volume: &VolumeFacts, commands: &mut Vec<Command>) {
     let current = volume.held.portion.thinning;
     let mut options: Vec<_> = THINNINGS.map(|thinning| (thinning, text::data::thinning(thinning))).into();
@@ -110,7 +111,7 @@ fn thinning(ui: &mut Ui, volume: &VolumeFacts, commands: &mut Vec<Command>) {
     });
 }
 
-/// A length in the unit that it is shown in: millimetres only where the size of voxels is known.
+/// Converts a length into the unit in which it is shown: in voxels instead of millimetres if their size is unknown.
 fn shown_length(length: Length, volume: &VolumeFacts) -> Length {
     match length {
         Length::Mm(_) if volume.has_unknown_scale => {
@@ -120,7 +121,7 @@ fn shown_length(length: Length, volume: &VolumeFacts) -> Length {
     }
 }
 
-/// What the unit of a length is called.
+/// Name and tooltip of the unit of a length.
 fn unit_of(length: Length) -> Named {
     match length {
         Length::Mm(_) => text::data::MILLIMETRES,

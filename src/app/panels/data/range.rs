@@ -1,4 +1,4 @@
-//! Rows of the section "Data" that say which values the picture shows, and choose them.
+//! Value range rows of the section "Data": the values that densities 0 and 1 stand for.
 
 use eframe::egui::{self, Ui};
 
@@ -8,14 +8,15 @@ use crate::app::text::{self, Named};
 use crate::data::{ValueRange, ValueRanges};
 use crate::model::{DensityRange, Settings};
 
-/// Shares of the span by which a point of a drag moves an end: 500 points, which every window has, cover all of it.
+/// Share of the span by which a drag of one point moves an end: 500 points, which fit in every window, cover the
+/// span.
 const SPEED: f64 = 1.0 / 500.0;
 
-/// Shares of the values that matter by which the ends of a range stay apart: one of the densities that 16 bits tell from
-/// each other.
+/// Smallest distance between the ends of a typed range, as a share of the robust range: one of 65 536 densities, the
+/// steps of 16 bits.
 const LEAST: f64 = 1.0 / 65_536.0;
 
-/// Shows them.
+/// Shows the rows of the value range: choice, typed ends, and result.
 pub(super) fn show(ui: &mut Ui, settings: &mut Settings, volume: &VolumeFacts) {
     let typed = match settings.range {
         DensityRange::Typed(range) => range,
@@ -36,7 +37,7 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, volume: &VolumeFacts) {
     row(ui, Named { name: text::data::SHOWN, tip: "" }, |ui| ui.add(egui::Label::new(shown).truncate()));
 }
 
-/// The two ends of a typed range, which stay in order and apart: an end that is moved stops before the other.
+/// Shows the two ends of a typed range; each is limited by the other, so that they stay in order and apart.
 fn ends(ui: &mut Ui, range: &mut ValueRange, volume: &VolumeFacts) {
     let speed = volume.ranges.robust.span().max(range.span()).max(f64::MIN_POSITIVE) * SPEED;
     let Ends { most_low, least_high } = Ends::of(*range, volume.ranges);
@@ -44,14 +45,14 @@ fn ends(ui: &mut Ui, range: &mut ValueRange, volume: &VolumeFacts) {
         (&mut range.low, f64::MIN..=most_low, text::data::LOW),
         (&mut range.high, least_high..=f64::MAX, text::data::HIGH),
     ] {
-        // What a file brought stays until somebody changes it.
+        // A value from a file stays until the user changes it.
         let field = egui::DragValue::new(end).speed(speed).max_decimals(6);
         let field = field.range(limits).clamp_existing_to_range(false);
         ui.name_inputs(named.name, |ui| ui.add(field)).on_hover_text(named.tip);
     }
 }
 
-/// How near the ends of a range may come to each other.
+/// Limits of the ends of a typed range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Ends {
     most_low: f64,
@@ -59,10 +60,10 @@ struct Ends {
 }
 
 impl Ends {
-    /// Of a range, for a volume with these values.
+    /// Computes the limits of a range's ends, for a volume with these values.
     fn of(range: ValueRange, ranges: ValueRanges) -> Self {
         let least = ranges.robust.span().max(f64::MIN_POSITIVE) * LEAST;
-        // Next to large numbers that may be nothing.
+        // Next to large numbers the difference may round to 0.
         let most_low = (range.high - least).min(range.high.next_down());
         let least_high = (range.low + least).max(range.low.next_up());
         Self { most_low, least_high }

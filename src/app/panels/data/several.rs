@@ -1,4 +1,4 @@
-//! Rows of the section "Data" for what else the file holds.
+//! Rows of the section "Data" for files of several volumes: series, channels and time steps.
 
 use eframe::egui::{self, Ui};
 
@@ -9,10 +9,10 @@ use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text;
 use crate::data::load::Aspect;
 
-/// Points of a button that takes the next one.
+/// Width of a step button, in points.
 const STEP_WIDTH: f32 = 20.0;
 
-/// Shows a row for each way in which volumes of the file differ.
+/// Shows a row for each aspect in which the file has several volumes.
 pub(super) fn show(ui: &mut Ui, volume: &VolumeFacts, commands: &mut Vec<Command>) {
     for aspect in Aspect::ALL {
         let Some(all) = Alternatives::of(&volume.held, aspect) else { continue };
@@ -27,7 +27,7 @@ fn choice(ui: &mut Ui, aspect: Aspect, all: &Alternatives<'_>, commands: &mut Ve
     let (at, count) = (all.at(), all.count());
     row(ui, text::chooser::row(aspect), |ui| {
         let steps = 2.0 * (STEP_WIDTH + ui.spacing().item_spacing.x);
-        // A point for what is rounded up.
+        // One point less, because widths are rounded up.
         let width = ui.available_width() - steps - 1.0;
         ui.add_enabled_ui(at > 0, |ui| step(ui, aspect, false, commands));
         let present = text::chooser::present(at, count, &all.name(at));

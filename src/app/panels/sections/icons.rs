@@ -1,14 +1,14 @@
-//! Small drawings that stand for the sections of the side panel: no font has them all.
+//! Icons of the side panel's sections, drawn as shapes: no font has all of them.
 
 use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2, vec2};
 use std::f32::consts::{PI, TAU};
 
 use crate::app::text::sections::{CAMERA, COMPARE, CUTS, DATA, FLOOR, LIGHTS, SHADING, SHADOWS, SOFT_LIGHT};
 
-/// Points from the middle of a drawing to its edges.
+/// Half of an icon's edge, in points.
 const REACH: f32 = 7.0;
 
-/// A drawing that is being made.
+/// Painter of an icon, in coordinates from −1 to 1 around its centre.
 struct Pen<'p> {
     painter: &'p Painter,
     middle: Pos2,
@@ -39,13 +39,13 @@ impl Pen<'_> {
     }
 }
 
-/// Part of a circle, as a line.
+/// Polyline of a circular arc, with angles in radians.
 fn arc([x, y]: [f32; 2], radius: f32, from: f32, to: f32) -> Vec<[f32; 2]> {
     let step = |at: usize| from + (to - from) * at as f32 / 16.0;
     (0..=16).map(|at| [x + radius * step(at).cos(), y + radius * step(at).sin()]).collect()
 }
 
-/// Draws what stands for a section.
+/// Paints the icon of a section, identified by its title.
 pub(super) fn paint(painter: &Painter, title: &str, middle: Pos2, ink: Color32) {
     let pen = Pen { painter, middle, ink };
     let (empty, half) = (Color32::TRANSPARENT, ink.gamma_multiply(0.45));

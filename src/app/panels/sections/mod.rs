@@ -1,4 +1,4 @@
-//! What of the side panel's sections is on, and what their reset buttons put back.
+//! State of the side panel's sections: which are active, and how their reset buttons restore the first look.
 
 mod icons;
 pub(super) mod tabs;
@@ -6,7 +6,7 @@ pub(super) mod tabs;
 use crate::app::text::sections::{CAMERA, COMPARE, CUTS, DATA, FLOOR, LIGHTS, SHADING, SHADOWS, SOFT_LIGHT};
 use crate::model::{Settings, Shadows};
 
-/// Whether something is on in a section that usually is off, so that its header shows it.
+/// Returns true if something is on in a section that is off by default, so that its header shows a dot.
 pub(super) fn is_active(title: &str, settings: &Settings, compares: bool) -> bool {
     match title {
         SOFT_LIGHT => settings.sky.is_on() || settings.has_bounces(),
@@ -18,14 +18,13 @@ pub(super) fn is_active(title: &str, settings: &Settings, compares: bool) -> boo
     }
 }
 
-/// Puts the settings of a section back to what they were at first; sections that belong to the file, or that show two
-/// looks, have nothing to put back.
+/// Resets a section to the first look; sections that belong to the file, or that compare two looks, are not reset.
 pub(super) fn put_back(title: &str, settings: &mut Settings, first: &Settings) {
     match title {
-        // Lights stand around the object as it stood.
+        // The first lights are placed around the object as it stood then.
         LIGHTS if settings.camera.up == first.camera.up => settings.lights.clone_from(&first.lights),
         SHADOWS => {
-            // The balance is measured, and not set.
+            // The balance is measured rather than set.
             let Shadows { balance, keep_balanced, .. } = settings.shadows;
             settings.shadows = Shadows { balance, keep_balanced, ..first.shadows.clone() };
             (settings.lighting, settings.opacity_unit) = (first.lighting.clone(), first.opacity_unit);
@@ -45,7 +44,7 @@ pub(super) fn put_back(title: &str, settings: &mut Settings, first: &Settings) {
             settings.camera.projection = first.camera.projection;
             settings.camera.fov_y_deg = first.camera.fov_y_deg;
             settings.camera.roll_deg = first.camera.roll_deg;
-            // As the object stands now.
+            // Only if the object still stands the same way up.
             if first.camera.up == settings.camera.up {
                 settings.camera.clone_from(&first.camera);
             }
@@ -54,7 +53,7 @@ pub(super) fn put_back(title: &str, settings: &mut Settings, first: &Settings) {
     }
 }
 
-/// Whether a section has anything to put back.
+/// Returns true if resetting a section would change a setting.
 pub(super) fn differs(title: &str, settings: &Settings, first: &Settings) -> bool {
     match title {
         DATA | COMPARE => false,

@@ -1,4 +1,4 @@
-//! A row of drawings above the sections of the side panel: each leads to one, however far down that is.
+//! Icon bar above the sections of the side panel: each icon opens its section and scrolls to it.
 
 use eframe::egui::{Role, Sense, Ui, Vec2, WidgetInfo};
 
@@ -8,10 +8,10 @@ use crate::app::common::theme;
 use crate::app::text;
 use crate::app::text::sections::ALL;
 
-/// Height of a drawing's button in points.
+/// Height of an icon's button, in points.
 const HEIGHT: f32 = 24.0;
 
-/// Shows one drawing for each section, with a dot where `is_active`.
+/// Shows one icon for each section, with a dot where `is_active`.
 pub(in crate::app::panels) fn show(ui: &mut Ui, is_active: impl Fn(&str) -> bool) {
     let size = Vec2::new(ui.available_width() / ALL.len() as f32, HEIGHT);
     ui.horizontal(|ui| {

@@ -1,7 +1,7 @@
-//! Files of others that are read on a thread: looks, sessions, transfer functions, pictures of surroundings.
+//! Background reading of files other than volumes: looks, sessions, transfer functions and environment maps.
 //!
-//! The window goes on meanwhile. What is done with the content happens on the window's thread once it is there, or once the
-//! user has cancelled the task; a task that is cancelled runs to its end, and its result is dropped.
+//! The window stays responsive meanwhile. The content is used on the window's thread when the task has ended, or when
+//! the user has cancelled it; a cancelled task runs to its end, and its result is dropped.
 
 mod surroundings;
 mod transfer;
@@ -15,50 +15,50 @@ use crate::app::common::frame;
 use crate::app::worker::task::Work;
 use crate::app::{App, text};
 
-/// Purposes for which a file is read; for each one file at a time.
+/// Purpose for which a file is read; at most one file per purpose at a time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::app) enum Reason {
-    /// To open it: a look, or a volume.
+    /// Opens the file, which is a look or a volume.
     Open,
-    /// To lay the session over a volume that is loaded.
+    /// Applies the session to a volume that has been loaded.
     Session,
-    /// To lay its look over the open volume.
+    /// Applies the look to the open volume.
     Look,
-    /// To compare its look with that of the window.
+    /// Compares the look with that of the window.
     Comparison,
-    /// To import its transfer function.
+    /// Imports the transfer function of the file.
     Transfer,
-    /// To light the scene by it.
+    /// Lights the scene by the environment map.
     Surroundings,
 }
 
-/// The reason why a file has no content.
+/// Reason why the content of a file is missing.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(in crate::app) enum NotRead {
-    /// The user has cancelled the task.
+    /// Cancellation of the task by the user.
     Cancelled,
-    /// It failed, with details for a message.
+    /// Failure of the task, with details for a message.
     Failed(String),
 }
 
-/// Work for the window's thread when a task has ended.
+/// Continuation on the window's thread after a task has ended.
 type Finish = Box<dyn FnOnce(&mut App, &egui::Context)>;
 
-/// Use that is made of a file's content.
+/// Continuation that uses the content of a file.
 type Then<T> = Box<dyn FnOnce(&mut App, Result<T, NotRead>, &egui::Context)>;
 
-/// File that is being read on a thread.
+/// File that is being read on a thread, with its continuation.
 struct FileTask<T> {
     work: Work<Result<T, String>>,
     then: Then<T>,
 }
 
-/// Task whose content may be of any type.
+/// File task with the type of its content erased.
 trait Task {
-    /// Whether it has ended; then with the work that is left.
+    /// Returns the continuation if the task has ended, and the task itself otherwise.
     fn end(self: Box<Self>) -> Result<Finish, Box<dyn Task>>;
 
-    /// Gives it up.
+    /// Cancels the task and returns its continuation.
     fn cancel(self: Box<Self>) -> Finish;
 }
 
@@ -74,31 +74,31 @@ impl<T: Send + 'static> Task for FileTask<T> {
     }
 }
 
-/// Task with the file that it reads.
+/// Running task with its file and purpose.
 struct Running {
     reason: Reason,
     path: PathBuf,
     task: Box<dyn Task>,
 }
 
-/// Files that are being read.
+/// Set of the files that are being read.
 #[derive(Default)]
 pub(in crate::app) struct FileTasks {
     running: Vec<Running>,
 }
 
 impl FileTasks {
-    /// The file that was asked for last, of those that are being read.
+    /// Path of the file that was requested last, among those being read.
     pub(in crate::app) fn path(&self) -> Option<&Path> {
         self.running.last().map(|running| running.path.as_path())
     }
 
-    /// Whether a file is read for a reason.
+    /// Returns true while a file is read for this purpose.
     pub(in crate::app) fn is_reading(&self, reason: Reason) -> bool {
         self.running.iter().any(|running| running.reason == reason)
     }
 
-    /// Forgets what is read for a reason: something else has taken its place.
+    /// Drops the task of a purpose, because something else has superseded it.
     pub(in crate::app) fn forget(&mut self, reason: Reason) {
         self.running.retain(|running| running.reason != reason);
     }
@@ -128,7 +128,7 @@ impl FileTasks {
         }
     }
 
-    /// What is left to do of tasks that have ended.
+    /// Removes the tasks that have ended, and returns their continuations.
     fn take(&mut self) -> Vec<(Reason, Finish)> {
         let mut ended = Vec::new();
         for Running { reason, path, task } in std::mem::take(&mut self.running) {
@@ -142,7 +142,7 @@ impl FileTasks {
 }
 
 impl App {
-    /// Reads a file on a thread, and does something with its content when it is there or was given up.
+    /// Reads a file on a thread; `then` gets the content, or the reason why it is missing.
     pub(in crate::app) fn read_file<T: Send + 'static>(
         &mut self,
         reason: Reason,
@@ -156,7 +156,7 @@ impl App {
         }
     }
 
-    /// Says that nothing came of a file.
+    /// Reports that a file was not read.
     pub(in crate::app) fn say_not_read(&mut self, short: &str, why: NotRead) {
         match why {
             NotRead::Cancelled => self.messages.note(text::files::READING_CANCELLED),
@@ -164,7 +164,7 @@ impl App {
         }
     }
 
-    /// Takes in what was read.
+    /// Runs the continuations of the tasks that have ended.
     pub(in crate::app) fn take_files(&mut self, ctx: &egui::Context) {
         for (reason, finish) in self.file_tasks.take() {
             finish(self, ctx);
@@ -172,7 +172,7 @@ impl App {
         }
     }
 
-    /// Cancels what is being read and opened.
+    /// Cancels opening a volume and reading other files.
     pub(in crate::app) fn cancel_files(&mut self, ctx: &egui::Context) {
         self.loader.cancel();
         for Running { reason, path: _, task } in std::mem::take(&mut self.file_tasks.running) {
@@ -181,7 +181,7 @@ impl App {
         }
     }
 
-    /// Cancels them when Escape was pressed, and nothing over the picture has taken that.
+    /// Cancels opening and reading when Escape was pressed and no window or widget takes the key.
     pub(in crate::app) fn cancel_files_by_key(&mut self, ctx: &egui::Context) {
         let is_reading = self.file_tasks.path().is_some() || self.loader.progress().is_some();
         if is_reading && frame::is_for_picture(ctx) {
@@ -190,14 +190,14 @@ impl App {
     }
 }
 
-/// A way to keep files from being read, for tests that look at the window meanwhile.
+/// Lock that blocks the reading of files, for tests that inspect the window meanwhile.
 #[cfg(feature = "testing")]
 mod hold {
     use std::sync::{Mutex, MutexGuard, PoisonError};
 
     static HELD: Mutex<()> = Mutex::new(());
 
-    /// Waits until nobody holds files back.
+    /// Waits until no test holds the lock.
     pub(super) fn wait() -> MutexGuard<'static, ()> {
         HELD.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -205,12 +205,12 @@ mod hold {
 
 #[cfg(feature = "testing")]
 impl App {
-    /// Keeps files from being read while the result is there.
+    /// Blocks the reading of files while the returned guard lives.
     pub fn hold_files() -> impl Sized {
         hold::wait()
     }
 
-    /// The file that is being read.
+    /// Path of the file that is being read.
     pub fn file_being_read(&self) -> Option<&Path> {
         self.file_tasks.path()
     }

@@ -1,4 +1,4 @@
-//! Light from the surroundings in a picture.
+//! Reading of environment maps that light the scene.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use crate::app::{App, text};
 use crate::data::read_surroundings;
 
 impl App {
-    /// Reads a picture of surroundings on a thread and lights the scene by it; one that is being read is forgotten.
+    /// Reads an environment map on a thread and lights the scene by it; supersedes one that is still being read.
     pub fn read_surroundings(&mut self, path: &Path, ctx: &egui::Context) {
         let read = |path: &Path| read_surroundings(path).map_err(|err| err.to_string());
         self.read_file(Reason::Surroundings, path, ctx, read, |app, read, _ctx| match read {

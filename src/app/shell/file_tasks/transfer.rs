@@ -1,4 +1,4 @@
-//! Transfer functions of other programs.
+//! Import of transfer functions of other programs.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::app::{App, text};
 use crate::model::LabelTable;
 
 impl App {
-    /// Reads a transfer function of another program on a thread and shows the volume with it.
+    /// Reads a transfer function of another program on a thread and applies it to the look.
     pub fn import_transfer(&mut self, path: &Path, ctx: &egui::Context) {
         let range = files::exchanged_range(&self.settings, &self.value_ranges());
         let read = move |path: &Path| files::import_transfer(path, range);

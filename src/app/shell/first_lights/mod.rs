@@ -1,6 +1,8 @@
-//! The end of a first look: the light that makes the most of shadows is sought when the first picture is on screen, on a
-//! thread of its own, and taken over in one short movement. What the user has touched by then is left alone. Times are
-//! in seconds, of any clock that does not go back.
+//! Automatic light placement at the end of a first look.
+//!
+//! A background search for the light whose shadows show most starts when the first picture is on screen, and its
+//! result is eased in. A look that the user has edited by then is left alone. Times are in seconds of any monotonic
+//! clock.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -16,43 +18,43 @@ use crate::app::worker::task::Work;
 use crate::gpu::{Found, GpuError, LightSearch, Sought};
 use crate::model::{Light, Settings};
 
-/// Between two places that are tried: long enough for another thread to take the device.
+/// Pause between two candidate positions: long enough for another thread to take the device.
 const BREATH: Duration = Duration::from_millis(1);
 
-/// The window in one of its frames.
+/// State of the window in one frame.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Moment<'a> {
-    /// When it is.
+    /// Time of the frame, in seconds.
     pub now_s: f64,
-    /// The look.
+    /// Settings of the look in this frame.
     pub settings: &'a Settings,
-    /// The full-quality picture of the look is on screen.
+    /// True if the full-quality picture of the look is on screen.
     pub complete: bool,
-    /// Somebody holds a button of the pointer or a key, or writes.
+    /// True while the user holds a pointer button or a key, or edits text.
     pub held: bool,
 }
 
-/// What the window has to do.
+/// Action that the window has to take.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Act {
-    /// Nothing, until something else happens.
+    /// Do nothing until something else happens.
     Nothing,
-    /// Seek the lights of the settings.
+    /// Search for the lights of the settings.
     Search,
-    /// Take these settings, and ask again in the next frame.
+    /// Apply these settings, and ask again in the next frame.
     Set(Box<Settings>),
 }
 
-/// How far the first look is.
+/// Progress of the light placement.
 #[derive(Debug, Clone, Default)]
 enum Phase {
-    /// It is finished, or no first look.
+    /// Finished, or not a first look.
     #[default]
     Done,
-    /// Nothing is sought yet.
+    /// Search is due and not yet started.
     Due,
     Searching,
-    /// Found, while somebody holds something.
+    /// Search has found lights, and the user holds a button or a key.
     Waiting(Box<Found>),
     Easing {
         from: Box<Settings>,
@@ -61,38 +63,39 @@ enum Phase {
     },
 }
 
-/// Decides when to search and what to set.
+/// State machine that decides when to search and which settings to apply.
 #[derive(Debug, Default)]
 pub(crate) struct FirstLights {
     phase: Phase,
-    /// The look that was opened, with what has been set since.
+    /// Settings of the opened look, with the changes made automatically since.
     known: Settings,
 }
 
 impl FirstLights {
-    /// For a first look that nobody has touched.
+    /// Starts with a first look that the user has not edited.
     pub(crate) fn of(settings: &Settings) -> Self {
         Self { phase: Phase::Due, known: settings.clone() }
     }
 
-    /// Whether the look will change without anybody's doing.
+    /// Returns true if the look is going to change automatically.
     pub(crate) fn is_due(&self) -> bool {
         !matches!(self.phase, Phase::Done)
     }
 
-    /// Nothing more is to come: the user has decided.
+    /// Stops the placement, since the user has edited the look.
     pub(crate) fn stop(&mut self) {
         self.phase = Phase::Done;
     }
 
-    /// The window has changed the look by itself, which nobody has touched for that.
+    /// Takes note of another automatic change of the look, which does not count as an edit by the user.
     pub(crate) fn follow(&mut self, before: &Settings, after: &Settings) {
         if self.is_due() && is_alike(before, &self.known) {
             self.known.clone_from(after);
         }
     }
 
-    /// As it goes on in another window, where nothing is sought yet and time has another beginning.
+    /// Returns the state for a successor window: with an unfinished search or easing due again, since its clock has
+    /// another origin.
     #[must_use]
     pub(crate) fn again(self) -> Self {
         let phase = match self.phase {
@@ -102,7 +105,7 @@ impl FirstLights {
         Self { phase, ..self }
     }
 
-    /// A search has ended; without a finding what is there stays.
+    /// Takes the result of a search; without one, the lights stay.
     pub(crate) fn found(&mut self, found: Result<Option<Found>, GpuError>) {
         if !matches!(self.phase, Phase::Searching) {
             return;
@@ -111,22 +114,22 @@ impl FirstLights {
             Ok(Some(found)) => Phase::Waiting(Box::new(found)),
             Ok(None) => Phase::Done,
             Err(err) => {
-                // It is an offer; why there is none matters to nobody but developers.
+                // The search is optional: the reason of its failure matters only to developers.
                 log::warn!("no light was found: {err}");
-                // Another window takes the place of this one, and seeks again.
+                // After the loss of the device, a successor window searches again.
                 if matches!(err, GpuError::Lost(_)) { Phase::Searching } else { Phase::Done }
             }
         };
     }
 
-    /// What is to be done in this frame.
+    /// Decides on the action for this frame.
     pub(crate) fn act(&mut self, moment: Moment<'_>) -> Act {
         let Moment { now_s, settings, complete, held } = moment;
         if !self.is_due() {
             return Act::Nothing;
         }
         if !is_alike(settings, &self.known) {
-            // What is sought would no longer be of what is shown, or would take away what somebody has chosen.
+            // The result would no longer fit the picture, or would override a choice of the user.
             self.stop();
             return Act::Nothing;
         }
@@ -154,7 +157,7 @@ impl FirstLights {
         }
     }
 
-    /// The settings on their way to what was found.
+    /// Interpolates the settings towards the search result.
     fn ease(&mut self, settings: &Settings, now_s: f64) -> Act {
         let Phase::Easing { from, to, since_s } = &self.phase else { return Act::Nothing };
         let share = share(*since_s, now_s);
@@ -178,7 +181,7 @@ impl FirstLights {
     }
 }
 
-/// Lights on their way from some places to others, each on a circle around the middle.
+/// Interpolates between two sets of lights, each light along a circle around the centre.
 fn between(from: &[Light], to: &[Light], share: f64) -> Vec<Light> {
     let pairs = to.iter().enumerate();
     pairs
@@ -190,7 +193,7 @@ fn between(from: &[Light], to: &[Light], share: f64) -> Vec<Light> {
         .collect()
 }
 
-/// A search that runs. Dropping this ends it at its next step, and forgets what it has found.
+/// Running light search. Dropping this value cancels the search at its next step and discards the result.
 pub(crate) struct Seeking {
     work: Work<Result<Option<Found>, GpuError>>,
     is_unwanted: Arc<AtomicBool>,
@@ -203,7 +206,7 @@ impl Drop for Seeking {
 }
 
 impl App {
-    /// Finishes the first look of the volume, if nobody has touched it.
+    /// Finishes the first look of the volume with the lights found, unless the user has edited it.
     pub(crate) fn finish_first_look(&mut self, ctx: &egui::Context) {
         if let Some(result) = self.light_search.as_ref().and_then(|seeking| seeking.work.take()) {
             self.light_search = None;
@@ -219,7 +222,7 @@ impl App {
         let moment = Moment {
             now_s,
             settings: &self.settings,
-            // A balance that is about to change belongs to the picture for which lights are sought.
+            // The search refers to the picture with the final balance, so a pending change comes first.
             complete: self.is_complete() && !self.keep_balanced.is_due(&self.settings),
             held: is_held(ctx),
         };
@@ -229,8 +232,8 @@ impl App {
             Act::Set(next) => {
                 let before = self.step();
                 self.settings = *next;
-                // It belongs to the first look: there is nothing to undo, whatever has been done to the view since, and
-                // resetting leads here.
+                // Part of the first look: there is nothing to undo, even if the view has changed since, and resets
+                // lead here.
                 self.history.finish(now_s, &before, |step| finished(step, &before, &self.settings));
                 let Settings { lights, floor, shadows, output, .. } = &self.settings;
                 self.defaults.lights.clone_from(lights);
@@ -243,7 +246,7 @@ impl App {
         }
     }
 
-    /// Seeks the lights of the settings on a thread of its own, on the device of the pictures, whose pipelines are there.
+    /// Starts a light search on a thread, on the render device, whose pipelines are compiled already.
     fn seek_lights(&mut self, ctx: &egui::Context) {
         let Some(dataset) = self.viewport.dataset() else { return self.first_lights.stop() };
         let (shaders, settings) = (self.loader.shaders().clone(), self.settings.clone());
@@ -255,7 +258,7 @@ impl App {
                 if asked.load(Ordering::Relaxed) {
                     return Ok(None);
                 }
-                // Pictures that are asked for meanwhile come between.
+                // Lets pictures that were requested meanwhile go first.
                 std::thread::sleep(BREATH);
             }
             Ok(search.finish())
@@ -270,8 +273,7 @@ impl App {
     }
 }
 
-/// A step of the history with the lights to which the window has brought a look: where it shows that look, from
-/// wherever.
+/// Applies the automatic lights to a step of the history, if the step shows that look from any view.
 fn finished(step: &Step, before: &Step, after: &Settings) -> Step {
     if step.treated_as != before.treated_as || !is_alike(&step.settings, &before.settings) {
         return step.clone();
@@ -280,7 +282,7 @@ fn finished(step: &Step, before: &Step, after: &Settings) -> Step {
     Step { settings: Settings { camera, kept, ..after.clone() }, ..*step }
 }
 
-/// Whether two looks are the same but for the view.
+/// Returns true if two looks differ in the view and the saved views at most.
 fn is_alike(a: &Settings, b: &Settings) -> bool {
     let mut seen = a.clone();
     seen.camera.clone_from(&b.camera);

@@ -1,21 +1,21 @@
-//! Lights come to their places, in virtual time.
+//! Tests of the automatic light placement, in virtual time.
 
 use super::*;
 use crate::app::shell::easing::EASE_S;
 use crate::gpu::Suggestion;
 use crate::model::Rig;
 
-/// A window in virtual time, with sixty frames a second, whose searches take a tenth of a second.
+/// Window in virtual time, with 60 frames per second, whose searches take 0.1 s.
 struct Window {
     lights: FirstLights,
     settings: Settings,
     now_s: f64,
     held: bool,
     complete: bool,
-    /// When the search ends.
+    /// End time of the running search, in seconds.
     searching: Option<f64>,
     searches: usize,
-    /// The lights after each frame in which they were set.
+    /// Lights after each frame in which they were set.
     set: Vec<Vec<Light>>,
     answer: Option<Found>,
 }
@@ -68,7 +68,7 @@ impl Window {
     }
 }
 
-/// What is found.
+/// Lights that the search of these tests finds.
 fn proposed() -> Vec<Light> {
     Rig::ThreeQuarter.lights(&Settings::default().camera)
 }
@@ -102,7 +102,7 @@ fn the_picture_comes_first() {
     assert_eq!(window.searches, 1);
 }
 
-/// What somebody may do to a look.
+/// Edit that the user may make to a look.
 type Touch = fn(&mut Settings);
 
 #[test]
@@ -114,7 +114,7 @@ fn what_somebody_has_touched_is_left_alone() {
         ("the floor", |settings| settings.floor.on = true),
     ];
     for (what, touch) in touch {
-        // While it is sought, and while lights move.
+        // During the search, and during the easing.
         for after_s in [0.05, 0.3] {
             let mut window = Window::new();
             window.run(after_s);
@@ -174,7 +174,7 @@ fn a_balance_that_the_window_finds_is_nobodys_touch() {
     window.complete = true;
     window.run(2.0);
     assert_eq!((window.searches, &window.settings.lights), (1, &proposed()));
-    // In proportion, as of any balance.
+    // Scaled by the ratio that the search has found, whatever the balance.
     assert!((window.settings.shadows.balance - 1.9 * 1.8 / 1.5).abs() < 1e-9);
 }
 
@@ -195,14 +195,14 @@ fn what_was_sought_on_a_device_that_is_lost_is_sought_again_in_another_window() 
     let mut window = Window::new();
     window.run(0.05);
     assert_eq!((window.searches, window.searching.take().is_some()), (1, true));
-    // The search learns of it before the window does.
+    // The search learns of the loss before the window does.
     window.lights.found(Err(GpuError::Lost("gone".to_owned())));
     window.run(0.5);
     assert_eq!(window.searches, 1, "not on that device");
     window.lights = std::mem::take(&mut window.lights).again();
     window.run(2.0);
     assert_eq!((window.searches, &window.settings.lights), (2, &proposed()));
-    // What else goes wrong would go wrong again.
+    // Other errors would occur again.
     let mut window = Window::new();
     window.run(0.05);
     window.searching = None;

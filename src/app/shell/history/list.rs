@@ -1,4 +1,4 @@
-//! The list of steps: what each has changed, and one click to go there.
+//! History window: the list of undo steps with their changes; a click goes to a step.
 
 use eframe::egui;
 
@@ -7,27 +7,27 @@ use crate::app::common::commands::Command;
 use crate::app::common::frame;
 use crate::app::{App, text};
 
-/// What steps have changed, the first one first, and which of them was taken last: 0 for none.
+/// Descriptions of all steps, the oldest first, and the number of steps that are done, 0 at the start.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Steps {
     pub names: Vec<String>,
     pub taken: usize,
 }
 
-/// The list, and what it was made for.
+/// Cached list, and the step for which it was made.
 #[derive(Debug, Default)]
 pub(crate) struct Listed {
-    /// Whether it is shown.
+    /// True while the window is open.
     pub open: bool,
     of: Option<Step>,
     steps: Steps,
 }
 
 impl History {
-    /// All steps back and forward.
+    /// Lists all undo and redo steps around `now`.
     pub(super) fn steps(&self, now: &Step) -> Steps {
         let names = |is_back: bool| {
-            // Steps are looked at by taking them.
+            // A step is known only by taking it, here on a copy.
             let mut history = Self { undoer: self.undoer.clone(), went: None };
             let (mut at, mut names) = (now.clone(), Vec::new());
             while if is_back { history.can_undo(&at) } else { history.can_redo(&at) } {
@@ -52,14 +52,14 @@ impl History {
 }
 
 impl App {
-    /// Shows the list of steps, if it is wanted.
+    /// Shows the history window, if it is open.
     pub(in crate::app) fn history_list(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) {
         if !self.listed.open {
             self.listed.of = None;
             return;
         }
         let now = self.step();
-        // Names are found by taking every step: not while something is dragged, which is no step yet.
+        // Listing takes every step: not during a drag, which is no step yet.
         let is_new = self.listed.of.is_none() || ctx.dragged_id().is_none();
         if is_new && self.listed.of.as_ref() != Some(&now) {
             self.listed.steps = self.history.steps(&now);
@@ -93,9 +93,9 @@ impl App {
         self.listed.open &= !frame::is_left(ctx, shown.as_ref().map(|shown| &shown.response));
     }
 
-    /// Goes so many steps forward, or back if they are negative.
+    /// Goes the given number of steps forward, or back if it is negative.
     pub(in crate::app) fn go_steps(&mut self, steps: i32, ctx: &egui::Context) {
-        // One word is enough for all of them.
+        // Only the last step shows a message.
         for _ in 1..steps.unsigned_abs() {
             self.take_step(steps < 0, ctx);
         }

@@ -10,23 +10,23 @@ use crate::app::{App, text};
 use crate::data::KindName;
 use crate::model::Settings;
 
-/// Seconds without a change after which a step can be undone.
+/// Time without a change after which a step can be undone, in seconds.
 const STABLE_S: f32 = 0.4;
 
-/// What a step back or forward leads to.
+/// State to which an undo or redo leads.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Step {
-    /// The look.
+    /// Settings of the look at this step.
     pub settings: Settings,
-    /// The kind of data for which its first look was made, if not the volume's own.
+    /// Kind of data for which the first look was made, if not the volume's own.
     pub treated_as: Option<KindName>,
 }
 
-/// Looks as they were.
+/// Undo history of the look.
 #[derive(Debug)]
 pub(crate) struct History {
     undoer: Undoer<Step>,
-    /// What the last step back or forward was, and where it has led.
+    /// Description of the last undo or redo, with the settings to which it has led.
     went: Option<(String, Settings)>,
 }
 
@@ -38,19 +38,19 @@ impl Default for History {
 }
 
 impl History {
-    /// A history in which something has come before what is shown.
+    /// Creates a history with one step before the look that is shown.
     pub(crate) fn after(before: &Step) -> Self {
         let mut history = Self::default();
         history.undoer.add_undo(before);
         history
     }
 
-    /// What the next step back or forward changes; `None` where there is none.
+    /// Describes the next undo or redo; `None` where there is none.
     pub(crate) fn name(&self, now: &Step, is_back: bool) -> Option<String> {
         if !(if is_back { self.can_undo(now) } else { self.can_redo(now) }) {
             return None;
         }
-        // Steps are looked at by taking them.
+        // A step is known only by taking it, here on a copy.
         let mut history = Self { undoer: self.undoer.clone(), went: None };
         let mut other = now.clone();
         let changed = if is_back {
@@ -63,12 +63,12 @@ impl History {
         Some(changed.unwrap_or_else(|| text::changes::KIND_OF_DATA.to_owned()))
     }
 
-    /// What the step was that has led here, while nothing is changed since.
+    /// Returns the description of the undo or redo that has led to these settings, until they change.
     pub(crate) fn went(&self, settings: &Settings) -> Option<&str> {
         self.went.as_ref().filter(|(_, led_to)| led_to == settings).map(|(words, _)| words.as_str())
     }
 
-    /// Takes note of the look, except while something is dragged: a drag is one step.
+    /// Records the look, except during a drag: a drag is one step.
     pub(crate) fn observe(&mut self, ctx: &egui::Context, step: &Step) {
         if ctx.dragged_id().is_none() {
             self.undoer.feed_state(ctx.input(|input| input.time), step);
@@ -78,12 +78,12 @@ impl History {
         }
     }
 
-    /// A change has been followed by another that the window makes by itself: both are one step.
+    /// Merges an automatic change into the step of the change that it follows.
     pub(crate) fn follow(&mut self, now_s: f64, before: &Step, after: &Step) {
-        // The change is at rest, whether or not it has been for long enough to be a step.
+        // The change is complete, though it may not have rested long enough to be a step.
         self.undoer.add_undo(before);
         if self.undoer.has_undo(before) {
-            // Its step goes, and so does the way forward to it.
+            // Removes its step, and the redo that leads to it.
             self.undoer.undo(before);
             self.undoer.feed_state(now_s, after);
         } else {
@@ -92,9 +92,8 @@ impl History {
         self.undoer.add_undo(after);
     }
 
-    /// The window has finished a look by itself, of which there may be several steps: all of them are as if it had been
-    /// finished before, and there is no step more. `shown` is what the window has shown until now, and `finished` makes
-    /// of a step what it is from now on.
+    /// Merges an automatic change of a look into all steps of that look, as if it had been made before them; adds no
+    /// step. `shown` is the step shown until now, and `finished` maps a step to its changed version.
     pub(crate) fn finish(&mut self, now_s: f64, shown: &Step, finished: impl Fn(&Step) -> Step) {
         self.undoer.feed_state(now_s, shown);
         let mut at = shown.clone();
@@ -103,7 +102,7 @@ impl History {
             (at, forward) = (next, forward + 1);
         }
         let mut steps = Vec::new();
-        // What still changes is no step.
+        // A change that is still in flux is no step.
         if !self.undoer.is_in_flux() {
             steps.push(at.clone());
         }
@@ -122,24 +121,24 @@ impl History {
         self.undoer.feed_state(now_s, &finished(shown));
     }
 
-    /// Whether there is a step back.
+    /// Returns true if a step can be undone.
     pub(crate) fn can_undo(&self, step: &Step) -> bool {
         self.undoer.has_undo(step)
     }
 
-    /// Whether there is a step forward.
+    /// Returns true if a step can be redone.
     pub(crate) fn can_redo(&self, step: &Step) -> bool {
         self.undoer.has_redo(step)
     }
 
-    /// One step back.
+    /// Replaces `step` by the one before it, if there is one.
     pub(crate) fn undo(&mut self, step: &mut Step) {
         if let Some(before) = self.undoer.undo(step) {
             step.clone_from(before);
         }
     }
 
-    /// One step forward again.
+    /// Replaces `step` by the one undone last, if there is one.
     pub(crate) fn redo(&mut self, step: &mut Step) {
         if let Some(after) = self.undoer.redo(step) {
             step.clone_from(after);
@@ -148,19 +147,19 @@ impl History {
 }
 
 impl App {
-    /// The look as the history keeps it.
+    /// Returns the look as the history keeps it.
     pub(in crate::app) fn step(&self) -> Step {
         Step { settings: self.settings.clone(), treated_as: self.treated.kind() }
     }
 
-    /// One step back, or one forward again, which the status bar says; what reset buttons put back goes along.
+    /// Takes one step back or forward and shows it in the status bar; the values of the reset buttons follow.
     pub(super) fn go(&mut self, is_back: bool, ctx: &egui::Context) {
         let what = self.history.name(&self.step(), is_back);
         self.take_step(is_back, ctx);
         if let Some(what) = what {
             let words = text::messages::went(is_back, &what);
             if self.layout.picture_only {
-                // There is no status bar.
+                // Without panels there is no status bar.
                 self.messages.note(words.clone());
             } else {
                 self.messages.step(&words);
@@ -169,7 +168,7 @@ impl App {
         }
     }
 
-    /// As [`Self::go`], without a word.
+    /// Takes a step as [`Self::go`] does, without a message.
     fn take_step(&mut self, is_back: bool, ctx: &egui::Context) {
         let mut step = self.step();
         if is_back {
@@ -180,9 +179,9 @@ impl App {
         let up = self.settings.camera.up;
         self.settings = step.settings;
         self.treated.change(step.treated_as, &mut self.defaults);
-        // With the balance that it had.
+        // The balance of the step is part of it.
         self.keep_balanced.accept(&self.settings);
-        // Only a step that has turned the object says how it is to stand.
+        // Only a step that has turned the object changes the remembered up axis.
         if self.settings.camera.up != up {
             self.first_look_stands(None, ctx);
             self.remember_up();
@@ -195,7 +194,7 @@ mod tests {
     use super::*;
     use crate::model::Kept;
 
-    /// A few numbers that look random and are always the same.
+    /// Sequence of reproducible pseudo-random numbers (linear congruential generator).
     fn numbers(seed: u64) -> impl Iterator<Item = u64> {
         std::iter::successors(Some(seed), |x| {
             Some(x.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407))
@@ -204,7 +203,7 @@ mod tests {
         .map(|x| x >> 33)
     }
 
-    /// Edits one thing or another.
+    /// Applies one of eleven kinds of edits.
     fn edit(settings: &mut Settings, choice: u64, amount: u64) {
         let share = (amount % 1000) as f64 / 1000.0;
         match choice % 11 {
@@ -233,7 +232,7 @@ mod tests {
         Step { settings: settings.clone(), treated_as: None }
     }
 
-    /// Settings after a step.
+    /// Undoes or redoes a step of the settings.
     fn gone(history: &mut History, settings: &mut Settings, is_back: bool) {
         let mut at = step(settings);
         if is_back {
@@ -258,12 +257,12 @@ mod tests {
             finished(&step(shown)).settings
         };
         let start = Settings::default();
-        // Nobody has done anything.
+        // Without any edit by the user.
         let mut history = History::default();
         history.undoer.feed_state(0.0, &step(&start));
         let settings = finish(&mut history, 1.0, &start);
         assert!(!history.can_undo(&step(&settings)) && !history.can_redo(&step(&settings)));
-        // Turned, a moment ago and long ago; of another look before that; and gone back.
+        // Turned a moment ago or long ago, after another look; and with one undo.
         for (rest_s, back) in [(0.1, 0), (3.0, 0), (3.0, 1)] {
             let mut history = History::default();
             let mut other = start.clone();
@@ -300,12 +299,12 @@ mod tests {
         let (mut history, start) = (History::default(), Settings::default());
         let mut settings = start.clone();
         history.undoer.feed_state(0.0, &step(&settings));
-        // Nothing was changed: there is nothing to undo.
+        // Without a change there is nothing to undo.
         settings.shadows.balance = 1.1;
         history.follow(0.5, &step(&start), &step(&settings));
         assert!(!history.can_undo(&step(&settings)));
         let start = settings.clone();
-        // At once, and after the change became a step.
+        // At once, and after the change has become a step.
         for rest_s in [0.1, 3.0] {
             settings.lights[0].intensity = 2.0;
             history.undoer.feed_state(1.0, &step(&settings));

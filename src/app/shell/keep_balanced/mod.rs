@@ -1,9 +1,8 @@
-//! *Keep balanced*: when the balance is measured anew, and how it gets from one value to the next. Times are in
-//! seconds, of any clock that does not go back.
+//! Automatic exposure balance (*Keep balanced*): when to measure it again, and easing to the new value.
 //!
-//! It acts only on a picture at rest, and what it finds is written into the settings: a picture depends on these
-//! alone, whenever and wherever it is made. The picture may be a preview: until the balance is there, none is drawn at full
-//! quality, so that a change is refined once.
+//! It acts only on an idle picture, and writes its result into the settings: a picture depends on these alone,
+//! whenever and wherever it is made. The picture may be a preview: until the balance is known, none is drawn at full
+//! quality, so that a change is refined once. Times are in seconds of any monotonic clock.
 
 use std::time::Duration;
 
@@ -15,34 +14,34 @@ use crate::app::{App, text};
 use crate::gpu::Renderer;
 use crate::model::{Engine, Sampling, Settings, Shadows};
 
-/// How long nothing may have changed: longer than the pauses within one movement of a hand.
+/// Debounce time without changes, in seconds: longer than the pauses within one movement of a hand.
 const REST_S: f64 = 0.25;
 
-/// Relative differences up to this are left alone: brightness that differs by so little is not told apart, and the
-/// measurement itself, in a small picture, is not much truer.
+/// Relative difference up to which the balance is left alone: the eye does not notice it, and the measurement itself,
+/// in a small picture, is hardly more exact.
 const TOLERANCE: f64 = 0.02;
 
-/// The window in one of its frames.
+/// State of the window in one frame.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Moment<'a> {
-    /// When it is.
+    /// Time of the frame, in seconds.
     pub now_s: f64,
-    /// The look.
+    /// Settings of the look in this frame.
     pub settings: &'a Settings,
-    /// A picture of the look is on screen, a preview or not.
+    /// True if a picture of the look is on screen, preview or not.
     pub is_shown: bool,
-    /// Somebody holds a button of the pointer or a key, or writes.
+    /// True while the user holds a pointer button or a key, or edits text.
     pub held: bool,
-    /// An earlier measurement still runs.
+    /// True while an earlier measurement runs.
     pub busy: bool,
 }
 
-/// What the window has to do.
+/// Action that the window has to take.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Act {
-    /// Nothing, until something else happens.
+    /// Do nothing until something else happens.
     Nothing,
-    /// Ask again after so many seconds.
+    /// Ask again after this time, in seconds.
     Wait(f64),
     /// Measure the balance of the settings.
     Measure,
@@ -57,44 +56,44 @@ enum Phase {
     Easing { from: f64, to: f64, since_s: f64 },
 }
 
-/// Decides when to measure and what to set.
+/// State machine that decides when to measure and which balance to set.
 #[derive(Debug)]
 pub(crate) struct KeepBalanced {
-    /// The look of the frame before.
+    /// Settings of the look in the previous frame.
     seen: Settings,
-    /// What the balance was last found for.
+    /// Settings for which the balance was found last, as [`brightness`] reduces them.
     balanced: Option<Settings>,
-    /// When something last changed or was held.
+    /// Time of the last change or held input, in seconds.
     stirred_s: f64,
     phase: Phase,
 }
 
 impl KeepBalanced {
-    /// Begins with a look, whose balance has been measured or not.
+    /// Starts with a look; `is_balanced`: its balance was measured.
     pub(crate) fn new(settings: &Settings, is_balanced: bool) -> Self {
         let balanced = is_balanced.then(|| brightness(settings));
         Self { seen: settings.clone(), balanced, stirred_s: 0.0, phase: Phase::Rest }
     }
 
-    /// Takes a look as it comes: its balance is part of it, as of a step that is undone or of a session.
+    /// Accepts the balance of a look as part of it, as after an undo or from a session.
     pub(crate) fn accept(&mut self, settings: &Settings) {
         *self = Self { stirred_s: self.stirred_s, ..Self::new(settings, true) };
     }
 
-    /// Whether the balance of the settings will change without anybody's doing.
+    /// Returns true if the balance of the settings is going to change automatically.
     pub(crate) fn is_due(&self, settings: &Settings) -> bool {
         let Shadows { keep_balanced, algorithm, .. } = settings.shadows;
         // Without shadows a balance has no effect.
         keep_balanced && algorithm.is_on() && self.balanced.as_ref() != Some(&brightness(settings))
     }
 
-    /// What is to be done in this frame.
+    /// Decides on the action for this frame.
     pub(crate) fn act(&mut self, moment: Moment<'_>) -> Act {
         let Moment { now_s, settings, is_shown, held, busy } = moment;
         let is_changed = *settings != self.seen;
         if is_changed {
             if settings.shadows.balance.to_bits() != self.seen.shadows.balance.to_bits() {
-                // Whoever sets it means it.
+                // A balance that was set explicitly is kept.
                 self.balanced = Some(brightness(settings));
             }
             self.seen.clone_from(settings);
@@ -104,7 +103,7 @@ impl KeepBalanced {
             self.phase = Phase::Rest;
         }
         if !settings.shadows.keep_balanced {
-            // Nobody looks after it: when the switch is on again, it is measured.
+            // Forgotten while switched off, so that it is measured when switched on again.
             self.balanced = None;
         }
         if !self.is_due(settings) {
@@ -136,19 +135,19 @@ impl KeepBalanced {
         Act::Set(balance)
     }
 
-    /// Its own change is none.
+    /// Sets the balance without counting it as a change.
     fn set(&mut self, balance: f64) {
         self.seen.shadows.balance = balance;
     }
 
-    /// The balance is what it should be.
+    /// Marks the current balance as final.
     fn settle(&mut self) {
         self.balanced = Some(brightness(&self.seen));
         self.phase = Phase::Rest;
     }
 
-    /// A measurement has ended; without a balance it failed, and is not tried again until something changes. What
-    /// was measured before the last change is dropped.
+    /// Takes the result of a measurement. `None` is a failure, which is not retried until something changes. A result
+    /// from before the last change is dropped.
     pub(crate) fn found(&mut self, now_s: f64, balance: Option<f64>) {
         if self.phase != Phase::Measuring {
             return;
@@ -164,7 +163,7 @@ impl KeepBalanced {
 }
 
 impl App {
-    /// Starts to measure the balance of the settings as they are, on a device of its own; nothing without a volume.
+    /// Starts measuring the balance of the current settings, on a device of its own; does nothing without a volume.
     pub(super) fn start_balance(&mut self, ctx: &egui::Context) {
         let Some(dataset) = self.viewport.dataset().filter(|_| self.balance.is_none()) else {
             return;
@@ -180,7 +179,7 @@ impl App {
         }
     }
 
-    /// Keeps the picture as bright as without shadows, if that is wanted.
+    /// Keeps the picture as bright as without shadows, if the setting is on.
     pub(crate) fn keep_balanced(&mut self, ctx: &egui::Context) {
         let now_s = ctx.input(|input| input.time);
         let (held, busy, has_its_volume) = (is_held(ctx), self.balance.is_some(), self.has_its_volume());
@@ -208,9 +207,9 @@ impl App {
     }
 }
 
-/// The part of a look on which it depends how much darker shadows make it, and the balance, without which an eased one
-/// that is half there could pass for the one that was found. That the view matters a little is let
-/// pass: turning a volume must not change its light.
+/// Reduces a look to the settings that influence how much shadows darken it, and the balance; without the balance,
+/// a value eased half-way could pass for the final one. The small influence of the view is ignored:
+/// turning a volume must not change its light.
 fn brightness(settings: &Settings) -> Settings {
     let Settings {
         schema,
@@ -240,7 +239,7 @@ fn brightness(settings: &Settings) -> Settings {
         schema: *schema,
         lights,
         range: *range,
-        // What a label is called has no brightness.
+        // Names of labels have no influence.
         labels: labels.unnamed(),
         transfer: transfer.clone(),
         lighting: lighting.clone(),

@@ -1,19 +1,19 @@
-//! The balance follows changes, in virtual time.
+//! Tests of the automatic balance, in virtual time.
 
 use super::*;
 use crate::model::LightLock;
 
-/// A window in virtual time, with sixty frames a second, whose measurements take a tenth of a second.
+/// Window in virtual time, with 60 frames per second, whose measurements take 0.1 s.
 struct Window {
     keeper: KeepBalanced,
     settings: Settings,
     now_s: f64,
     held: bool,
     is_shown: bool,
-    /// What is measured, and when that ends.
+    /// End time of the running measurement in seconds, and the balance that it finds.
     measuring: Option<(f64, f64)>,
     measured: usize,
-    /// The balance after each frame in which it was set.
+    /// Balance after each frame in which it was set.
     set: Vec<f64>,
     answer: f64,
 }
@@ -116,7 +116,7 @@ fn what_comes_between_drops_the_result() {
     let stirs: [fn(&mut Window); 3] =
         [Window::brighten, |window| window.held = true, |window| window.settings.camera.azimuth_deg += 5.0];
     for stir in stirs {
-        // While it is measured, and while it is eased.
+        // During the measurement, and during the easing.
         for after_s in [0.3, 0.5] {
             let mut window = Window::new();
             window.brighten();
@@ -230,11 +230,11 @@ fn it_is_off_when_switched_off_and_measures_when_switched_on() {
 #[test]
 fn a_balance_from_elsewhere_stays() {
     let mut window = Window::new();
-    // The button, or a session, while something else changes.
+    // Set by the button or a session, while something else changes.
     window.brighten();
     window.settings.shadows.balance = 3.0;
     window.pass(2.0);
-    // A step that is undone, with the balance that it had.
+    // Undo of a step, with the balance that it had.
     window.brighten();
     window.keeper.accept(&window.settings);
     window.pass(2.0);

@@ -1,4 +1,4 @@
-//! The list of all that was said.
+//! Window with the list of all messages.
 
 use std::time::Instant;
 
@@ -9,7 +9,7 @@ use crate::app::common::frame;
 use crate::app::text;
 
 impl Messages {
-    /// Shows the list, if it is wanted.
+    /// Shows the message list, if it is open.
     pub(crate) fn list(&mut self, ctx: &egui::Context) {
         if !self.lists {
             return;
@@ -31,7 +31,7 @@ impl Messages {
                                 short = short.color(ui.visuals().error_fg_color);
                             }
                             ui.add(egui::Label::new(short).wrap());
-                            // The first line has been said.
+                            // The first line is part of the headline.
                             let more: Vec<&str> = message.details.lines().skip(1).collect();
                             if !more.is_empty() {
                                 ui.add(egui::Label::new(RichText::new(more.join("\n")).weak()).wrap());

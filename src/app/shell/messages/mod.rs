@@ -1,4 +1,4 @@
-//! What went wrong, or went well: a notice over the picture, with details on click, and a list of all that was said.
+//! Messages to the user: a notification over the picture, with details on click, and a list of all messages.
 
 mod list;
 mod notice;
@@ -8,23 +8,22 @@ use std::time::{Duration, Instant};
 
 use crate::data::{plain, without_controls};
 
-/// How long a note stays; errors stay until they are dismissed.
+/// Time for which a note stays, in seconds; errors stay until they are dismissed.
 const NOTE_S: f64 = 6.0;
 
-/// How long the status bar counts a message that nobody has looked up: as long as somebody may come back to it who was
-/// interrupted.
+/// Time for which the status bar counts an unread message: long enough for a user to return from an interruption.
 const COUNTED: Duration = Duration::from_mins(1);
 
-/// Messages that are remembered: those of a long day.
+/// Maximum number of messages in the list: enough for a long day.
 const MOST: usize = 200;
 
-/// Characters of a message: more than the widest screen shows.
+/// Maximum number of characters of a headline: more than the widest screen shows.
 const LONGEST_SHORT: usize = 500;
 
-/// Characters of the details: two long paths, and what is said of them.
+/// Maximum number of characters of the details: two long paths with an explanation.
 const LONGEST_DETAILS: usize = 10_000;
 
-/// A message to the user.
+/// Message to the user, an error or a note.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Message {
     short: String,
@@ -33,43 +32,43 @@ struct Message {
 }
 
 impl Message {
-    /// What is said in a row: what happened, and the first reason for it.
+    /// Returns the message in one line: the headline and the first reason.
     fn words(&self) -> String {
         let words = match self.details.lines().next().map(str::trim) {
-            // Some errors begin with what has happened.
+            // Some errors begin with the headline.
             Some(reason) if reason.to_lowercase().starts_with(&self.short.to_lowercase()) => {
                 reason.to_owned()
             }
             Some(reason) if !reason.is_empty() => format!("{}: {reason}", self.short),
             _ => self.short.clone(),
         };
-        // Errors of the library are parts of sentences.
+        // Errors of the library begin in lower case.
         let mut letters = words.chars();
         letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
     }
 }
 
-/// The latest message and the errors so far.
+/// Current message, errors so far, and the list of all messages.
 #[derive(Debug, Default)]
 pub(crate) struct Messages {
     current: Option<Message>,
     expanded: bool,
-    /// When the note goes, in seconds of the window's clock; set when it is first shown.
+    /// Time at which the note disappears, in seconds of the window's clock; set when it is first shown.
     until_s: Option<f64>,
-    /// Since the last volume was opened, for automation.
+    /// Errors since the last volume was opened, for test automation.
     errors: Vec<String>,
-    /// The latest since then, also when it has gone.
+    /// Latest note since the last volume was opened, even if it has disappeared.
     note: Option<String>,
-    /// All that was said, the latest last, and when.
+    /// All messages with their times, the latest last.
     past: VecDeque<(Instant, Message)>,
-    /// When the list of them was on screen last.
+    /// Time at which the list was last on screen.
     listed: Option<Instant>,
-    /// The list of them is shown.
+    /// True while the list is open.
     pub lists: bool,
 }
 
 impl Messages {
-    /// Something went wrong.
+    /// Shows an error with its details, until it is dismissed.
     pub(crate) fn error(&mut self, short: impl Into<String>, details: impl Into<String>) {
         let (short, details) = (short.into(), details.into());
         log::error!("{short}: {details}");
@@ -77,14 +76,14 @@ impl Messages {
         self.show(Message { short, details, is_error: true });
     }
 
-    /// Something worth knowing.
+    /// Shows a note that disappears automatically.
     pub(crate) fn note(&mut self, short: impl Into<String>) {
         let short = short.into();
         self.note = Some(plain(&short, LONGEST_SHORT));
         self.show(Message { short, details: String::new(), is_error: false });
     }
 
-    /// A step of the history was taken: the status bar says so, and nothing is laid over the picture.
+    /// Records an undo or redo, which the status bar shows; removes a note from the picture.
     pub(crate) fn step(&mut self, words: &str) {
         self.note = Some(plain(words, LONGEST_SHORT));
         if self.current.as_ref().is_some_and(|message| !message.is_error) {
@@ -93,7 +92,7 @@ impl Messages {
     }
 
     fn show(&mut self, Message { short, details, is_error }: Message) {
-        // Names and errors come from files, and a label of any length takes as long to lay out.
+        // Names and errors come from files, and a label takes as long to lay out as it is.
         let short = plain(&short, LONGEST_SHORT);
         let details = without_controls(&details).chars().take(LONGEST_DETAILS).collect();
         self.expanded = false;
@@ -106,33 +105,34 @@ impl Messages {
         self.current = Some(message);
     }
 
-    /// A new volume is there: what was said before is over.
+    /// Clears the current message, the errors and the latest note when a new volume is open; the list stays.
     pub(crate) fn clear(&mut self) {
         let (past, listed, lists) = (std::mem::take(&mut self.past), self.listed, self.lists);
         *self = Self { past, listed, lists, ..Self::default() };
     }
 
-    /// What is being said is over; what went wrong stays known.
+    /// Hides the current message; errors stay recorded.
     pub(crate) fn dismiss(&mut self) {
         self.current = None;
     }
 
-    /// Errors so far.
+    /// Errors since the last volume was opened.
     pub(crate) fn errors(&self) -> &[String] {
         &self.errors
     }
 
-    /// The latest note, which may be over.
+    /// Latest note, even if it has disappeared.
     pub(crate) fn latest_note(&self) -> Option<&str> {
         self.note.as_deref()
     }
 
-    /// Whether a note lies over the picture, which goes by itself.
+    /// Returns true while a note is shown, which disappears automatically.
     pub(crate) fn shows_note(&self) -> bool {
         self.current.as_ref().is_some_and(|message| !message.is_error)
     }
 
-    /// How many messages have come lately that were not looked up in the list, and how long that holds.
+    /// Number of recent messages that were not seen in the list, and the time until the newest of them is no longer
+    /// counted.
     pub(crate) fn unread(&self) -> (usize, Duration) {
         let is_new =
             |when: &Instant| when.elapsed() < COUNTED && self.listed.is_none_or(|listed| *when > listed);
@@ -176,7 +176,7 @@ mod tests {
         let Message { short, details, .. } = messages.current.clone().unwrap();
         assert!(short.starts_with("a·[2J·bxx") && details.starts_with("c·\nc·\n"), "{short} {details}");
         let length = |text: &str| text.chars().count();
-        // One more says that it was cut.
+        // One more character marks the cut.
         assert_eq!((length(&short), length(&details)), (LONGEST_SHORT + 1, LONGEST_DETAILS));
         assert_eq!(messages.errors(), [short]);
         let said = |details: &str| {

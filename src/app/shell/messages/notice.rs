@@ -1,4 +1,4 @@
-//! The notice over the picture.
+//! Notification over the picture, and the window of its details.
 
 use std::time::Duration;
 
@@ -8,17 +8,17 @@ use super::{Messages, NOTE_S};
 use crate::app::common::frame;
 use crate::app::text;
 
-/// Points from the top of the picture: chips and words of a comparison are there.
+/// Distance from the top of the picture, in points: below the light chips and the captions of a comparison.
 const BELOW_TOP: f32 = 40.0;
 
-/// Points for the buttons beside the words.
+/// Width reserved for the buttons of the notification, in points.
 const BUTTONS: f32 = 150.0;
 
-/// Points of the widest notice.
+/// Maximum width of the notification, in points.
 const WIDEST: f32 = 620.0;
 
 impl Messages {
-    /// Shows the message over the picture, if there is one.
+    /// Shows the current message over the picture, if there is one.
     pub(crate) fn notice(&mut self, ctx: &egui::Context, picture: Rect) {
         let Some(message) = &self.current else { return };
         let now_s = ctx.input(|input| input.time);
@@ -46,7 +46,7 @@ impl Messages {
                         if !message.details.is_empty() && ui.small_button(text::messages::DETAILS).clicked() {
                             self.expanded ^= true;
                         }
-                        // What is left of the row is the message's, which is cut rather than its buttons.
+                        // The message gets the rest of the row, and is truncated rather than its buttons.
                         ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                             let words = message.words();
                             let mut rich = RichText::new(&words);
@@ -59,7 +59,7 @@ impl Messages {
                 });
             });
         });
-        // Whoever reads it has time to.
+        // Stays while the pointer is on it, so that it can be read.
         if shown.response.contains_pointer() && !message.is_error {
             self.until_s = Some(now_s + NOTE_S);
         }

@@ -1,5 +1,6 @@
-//! Corrections of what the file says: the volume that is shown is made anew from what was opened, on a thread of its own,
-//! and framed where it was framed.
+//! Correction of file metadata: a thread makes the corrected volume from the opened one.
+//!
+//! The view is framed again if it was framed before.
 
 use eframe::egui;
 
@@ -10,52 +11,52 @@ use crate::app::{App, text};
 use crate::data::{Corrections, Dataset, VolumeError};
 use crate::model::{Settings, auto};
 
-/// A volume that was corrected, and how its first look frames it.
+/// Corrected volume, and the first look that frames it.
 #[derive(Debug)]
 struct Made {
     dataset: Dataset,
     first: Settings,
 }
 
-/// A volume on its way.
+/// Correction in progress on a thread.
 #[derive(Debug)]
 struct Making {
     by: Corrections,
-    /// Of which file.
+    /// Identifier of the opened volume.
     opened_id: u64,
     work: Work<Result<Made, VolumeError>>,
 }
 
-/// How the open volume is corrected.
+/// State of the corrections of the open volume.
 #[derive(Debug, Default)]
 pub(in crate::app) struct Corrected {
-    /// What the file was when it was opened.
+    /// Size and modification time of the file when it was opened.
     stamp: FileStamp,
-    /// As somebody has them from elsewhere, or has chosen them before.
+    /// Corrections that need not be remembered: from a session or preset, or remembered already.
     known: Corrections,
     making: Option<Making>,
 }
 
 impl Corrected {
-    /// Of a volume that was opened, and is corrected from the beginning.
+    /// Starts with an opened volume and the corrections that it was opened with.
     pub(in crate::app) fn new(stamp: FileStamp, known: Corrections) -> Self {
         Self { stamp, known, making: None }
     }
 
-    /// Corrections that come from elsewhere, and need not be remembered.
+    /// Accepts corrections from a look, which need not be remembered.
     pub(in crate::app) fn accept(&mut self, by: Corrections) {
         self.known = by;
     }
 }
 
 impl App {
-    /// Whether the volume is not shown as the settings correct it, and will be.
+    /// Returns true while the volume shown lacks the corrections of the settings.
     pub(in crate::app) fn is_correcting(&self) -> bool {
         let shown = self.viewport.dataset().map(|dataset| *dataset.volume().corrections());
         shown.is_some_and(|shown| shown != self.settings.volume)
     }
 
-    /// Has the volume made as the settings correct it, and takes it over when it is there.
+    /// Starts correcting the volume as the settings say, and takes over the result.
     pub(in crate::app) fn follow_corrections(&mut self, ctx: &egui::Context) {
         self.take_corrected(ctx);
         let Some(dataset) = self.viewport.dataset() else { return };
@@ -63,7 +64,7 @@ impl App {
         if wanted == *volume.corrections() {
             self.corrected.making = None;
             if self.defaults.volume != wanted {
-                // From before, by a step back.
+                // Restored by an undo.
                 self.defaults.correct(wanted, volume);
             }
             if self.corrected.known != wanted {
@@ -78,7 +79,7 @@ impl App {
         }
     }
 
-    /// Starts to make the volume as the settings correct it; what was being made is not wanted any more.
+    /// Starts correcting the volume as the settings say; a correction in progress is dropped.
     fn correct(&mut self, dataset: Dataset, ctx: &egui::Context) {
         let (by, opened_id) = (self.settings.volume, dataset.volume().opened_id());
         let mut first = self.defaults.clone();
@@ -94,13 +95,13 @@ impl App {
         }
     }
 
-    /// Takes in a volume that has been corrected.
+    /// Takes over a corrected volume from its thread.
     fn take_corrected(&mut self, ctx: &egui::Context) {
         let Some(made) = self.corrected.making.as_ref().and_then(|making| making.work.take()) else { return };
         let Some(making) = self.corrected.making.take() else { return };
         let shown = self.viewport.dataset().map(|dataset| dataset.volume().opened_id());
         if making.by != self.settings.volume || shown != Some(making.opened_id) {
-            // Somebody has decided otherwise meanwhile.
+            // The settings or the volume have changed meanwhile.
             return;
         }
         match made {
@@ -118,7 +119,7 @@ impl App {
         self.messages.error(text::corrections::NOT_CORRECTED, why);
     }
 
-    /// Shows a corrected volume, as near as the one before, and on the floor again if that was.
+    /// Shows a corrected volume, framed again and back on the floor if the previous volume was.
     fn use_corrected(&mut self, made: Made, ctx: &egui::Context) {
         let Made { dataset, first } = made;
         let before = self.step();
@@ -137,11 +138,11 @@ impl App {
         }
         let after = self.step();
         if after != before {
-            // One step with the correction.
+            // Merged into the step of the correction.
             self.history.follow(ctx.input(|input| input.time), &before, &after);
             self.first_lights.follow(&before.settings, &after.settings);
         }
-        // What is being found is of the volume before.
+        // Results in progress belong to the volume before.
         (self.light_search, self.balance) = (None, None);
         self.contact_sheet.forget();
         if let Some(facts) = &mut self.volume {

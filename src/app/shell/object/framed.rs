@@ -1,5 +1,6 @@
-//! What views are framed by: where the object ends that is shown, found on a thread of its own while nothing else is
-//! done, since that goes through all voxels.
+//! Outline of the visible object, by which views are framed.
+//!
+//! It is found on a thread while the window is idle, since it takes a pass over all voxels.
 
 use std::sync::Arc;
 
@@ -11,7 +12,7 @@ use crate::app::worker::task::Work;
 use crate::model::auto::Outline;
 use crate::model::{Cuts, DensityRange, LabelTable, Settings, TransferFunction};
 
-/// What an outline depends on.
+/// Inputs on which an outline depends.
 #[derive(Debug, Clone, PartialEq)]
 struct Shown {
     content_id: u64,
@@ -32,24 +33,24 @@ impl Shown {
     }
 }
 
-/// The outline of the object, as far as it is known.
+/// Outline of the object with the search for it.
 #[derive(Debug, Default)]
 pub(in crate::app) struct Framed {
     known: Option<(Shown, Arc<Outline>)>,
     work: Option<(Shown, Work<Outline>)>,
-    /// It could not be found: it is not sought again for this volume.
+    /// Volume for which the search failed; it is not retried.
     failed: Option<u64>,
-    /// What waits for it, the latest.
+    /// Latest command that waits for the outline.
     waiting: Option<Command>,
 }
 
 impl App {
-    /// Identifies the volume that is shown.
+    /// Content identifier of the volume that is shown.
     fn shown_id(&self) -> Option<u64> {
         self.viewport.dataset().map(|dataset| dataset.volume().content_id())
     }
 
-    /// Whether the outline is that of what is shown.
+    /// Returns true if the outline of the current look is known, or cannot be found.
     pub(in crate::app) fn knows_outline(&self) -> bool {
         self.shown_id().is_none_or(|id| {
             let is_known = self.framed.known.as_ref().is_some_and(|(of, _)| of.is_by(&self.settings, id));
@@ -57,13 +58,13 @@ impl App {
         })
     }
 
-    /// The outline of what is shown, or of what was before while nobody knows a newer one.
+    /// Returns the latest outline of the volume shown; it may be of an earlier look while a newer one is not known.
     pub(in crate::app) fn outline(&self) -> Option<Arc<Outline>> {
         let (of, outline) = self.framed.known.as_ref()?;
         (Some(of.content_id) == self.shown_id()).then(|| Arc::clone(outline))
     }
 
-    /// Whether a command that needs the outline can be carried out; if not, that is done when it is known.
+    /// Returns true if a command that needs the outline can run; otherwise it is queued until the outline is known.
     pub(in crate::app::shell) fn can_frame(&mut self, command: Command, ctx: &egui::Context) -> bool {
         if self.knows_outline() {
             return true;
@@ -73,8 +74,8 @@ impl App {
         false
     }
 
-    /// Takes in the outline that was found, and seeks it anew when all is at rest and something else is shown. Returns
-    /// what has waited for it.
+    /// Takes over an outline from its thread, and starts a search when the window is idle and the look has changed.
+    /// Returns the command that has waited for the outline.
     pub(in crate::app) fn follow_outline(&mut self, ctx: &egui::Context) -> Option<Command> {
         if let Some((_, work)) = &self.framed.work
             && let Some(found) = work.take()
@@ -97,7 +98,7 @@ impl App {
         None
     }
 
-    /// Starts to seek the outline of what is shown, unless one is being sought.
+    /// Starts the search for the current outline, unless one is running.
     fn seek_outline(&mut self, ctx: &egui::Context) {
         let Some(dataset) = self.viewport.dataset().filter(|_| self.framed.work.is_none()) else { return };
         let settings = self.settings.clone();
@@ -114,11 +115,11 @@ impl App {
         }
     }
 
-    /// Frames what is shown, from where the eye looks.
+    /// Frames the visible object from the current direction.
     pub(in crate::app::shell) fn frame_object(&mut self) {
         match self.outline().filter(|outline| !outline.is_empty()) {
             Some(outline) => outline.frame(&mut self.settings.camera),
-            // Nothing is shown: what was at first.
+            // Nothing is visible: framed as the first look was.
             None => self.settings.camera.frame_as(&self.defaults.camera),
         }
     }

@@ -1,5 +1,6 @@
-//! Treats the volume as data of another kind than it is taken for: with the first look that is for those. It is made on
-//! a thread of its own, which goes through all voxels.
+//! Treatment of the volume as another kind of data than was detected, with the first look for that kind.
+//!
+//! A thread makes the look in a pass over all voxels.
 
 use std::sync::Arc;
 
@@ -11,36 +12,36 @@ use crate::app::{App, text};
 use crate::data::KindName;
 use crate::model::{LabelTable, Settings, TransferFunction, auto};
 
-/// Something that was made of all voxels.
+/// Result of a pass over all voxels.
 #[derive(Debug)]
 enum Made {
-    /// A first look, for data of a kind.
+    /// First look for a kind of data.
     Look(Option<KindName>, Box<Settings>),
-    /// A transfer function, or a table of labels.
+    /// Transfer function or table of labels.
     Transfer(TransferFunction, LabelTable),
 }
 
-/// Which kind of data the volume is treated as, and the first looks for other kinds.
+/// Kind of data as which the volume is treated, and the first looks for the other kinds.
 #[derive(Debug, Default)]
 pub(in crate::app) struct Treated {
     kind: Option<KindName>,
-    /// What was put back by reset buttons while it was treated as another kind: one look for each.
+    /// Values of the reset buttons for other kinds of data, one look for each.
     others: Vec<(Option<KindName>, Settings)>,
     making: Option<Work<Made>>,
 }
 
 impl Treated {
-    /// The kind that was chosen for the look that is shown; nothing if that is the volume's own.
+    /// Returns the kind chosen for the current look; `None` is the volume's own.
     pub(in crate::app) fn kind(&self) -> Option<KindName> {
         self.kind
     }
 
-    /// Whether a look is being made.
+    /// Returns true while a look is being made.
     pub(in crate::app) fn is_busy(&self) -> bool {
         self.making.is_some()
     }
 
-    /// Changes the kind, and with it what reset buttons put back, as far as that has been made.
+    /// Changes the kind, and with it the values of the reset buttons, if they have been made for it.
     pub(in crate::app) fn change(&mut self, kind: Option<KindName>, defaults: &mut Settings) {
         let before = std::mem::replace(&mut self.kind, kind);
         if before == kind {
@@ -56,7 +57,7 @@ impl Treated {
 }
 
 impl App {
-    /// Makes the first look anew, for data of a kind; for the volume's own if none is named.
+    /// Makes a first look for a kind of data, or for the volume's own kind if `None`.
     pub(in crate::app::shell) fn treat_as(&mut self, kind: Option<KindName>, ctx: &egui::Context) {
         let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &self.volume) else { return };
         let (histogram, up) = (Arc::clone(&facts.histogram), self.settings.camera.up);
@@ -65,7 +66,7 @@ impl App {
         self.make(task, ctx);
     }
 
-    /// Makes the automatic transfer function, or table of labels, for the kind of data that is shown.
+    /// Makes the automatic transfer function or table of labels for the current kind of data.
     pub(in crate::app::shell) fn use_automatic_transfer(&mut self, ctx: &egui::Context) {
         let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &self.volume) else { return };
         let (histogram, kind) = (Arc::clone(&facts.histogram), self.treated.kind);
@@ -76,7 +77,7 @@ impl App {
         self.make(task, ctx);
     }
 
-    /// Starts to make something; what was being made is not wanted any more.
+    /// Starts a task; the result of one in progress is dropped.
     fn make(&mut self, task: impl FnOnce() -> Made + Send + 'static, ctx: &egui::Context) {
         match Work::start("first-look", ctx, task) {
             Ok(work) => self.treated.making = Some(work),
@@ -84,7 +85,7 @@ impl App {
         }
     }
 
-    /// Takes in what has been made.
+    /// Takes over the result of a task from its thread.
     pub(in crate::app::shell) fn take_treated(&mut self, ctx: &egui::Context) {
         let Some(made) = self.treated.making.as_ref().and_then(Work::take) else { return };
         self.treated.making = None;
@@ -97,16 +98,16 @@ impl App {
         }
     }
 
-    /// Takes over a first look for data of a kind.
+    /// Applies a first look for a kind of data.
     fn use_first_look(&mut self, kind: Option<KindName>, look: Settings, ctx: &egui::Context) {
         if look.camera.up != self.settings.camera.up {
-            // It was turned meanwhile.
+            // The object was turned meanwhile.
             return self.treat_as(kind, ctx);
         }
         let look = auto::in_place_of(look, &self.settings);
         self.treated.change(kind, &mut self.defaults);
         self.selected_light = self.selected_light.min(look.lights.len().saturating_sub(1));
-        // Its lights are sought, as those of any first look.
+        // Starts a light search, as for any first look.
         self.first_lights = FirstLights::of(&look);
         self.light_search = None;
         self.defaults = look.clone();

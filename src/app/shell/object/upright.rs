@@ -1,5 +1,6 @@
-//! Which way up the object stands: turning it, what the view is reset to then, and what is remembered of it. What the
-//! view is reset to is framed on a thread of its own, which goes through all voxels.
+//! Orientation of the object: turning it upright, reframing the first look, remembering the up axis.
+//!
+//! A thread frames the first look in a pass over all voxels.
 
 use std::collections::VecDeque;
 
@@ -10,27 +11,27 @@ use crate::app::worker::task::Work;
 use crate::app::{App, text};
 use crate::model::{Camera, ObjectTurn, RoomTurn, SceneAxis, Settings, auto};
 
-/// What is done when the first look stands as it is to.
+/// Continuation after the first look has been framed.
 #[derive(Debug)]
 enum Then {
-    /// The object is turned.
+    /// Turns the object by turning camera and lights about it.
     Turn(ObjectTurn, RoomTurn),
-    /// Something that needs the first look.
+    /// Runs a command that needs the first look, if any.
     Do(Option<Command>),
 }
 
-/// The first look, on its way to where the object stands otherwise.
+/// First look that is being framed for another orientation.
 #[derive(Debug)]
 struct Framing {
     work: Work<Settings>,
-    /// As it was.
+    /// First look before the turn.
     of: Settings,
-    /// How the object stood in the look that is shown.
+    /// Up axis of the current look when framing began.
     up: SceneAxis,
     then: Then,
 }
 
-/// Turns of the object that are on their way, one after the other.
+/// Turn of the object in progress, and the queue of further commands.
 #[derive(Debug, Default)]
 pub(in crate::app) struct Upright {
     framing: Option<Framing>,
@@ -38,21 +39,21 @@ pub(in crate::app) struct Upright {
 }
 
 impl Upright {
-    /// Whether something is on its way.
+    /// Returns true while a turn is in progress.
     pub(in crate::app) fn is_busy(&self) -> bool {
         self.framing.is_some()
     }
 }
 
-/// Whether two cameras frame the same, but for what rounding leaves where a view was framed again.
+/// Returns true if two cameras frame the same, apart from the rounding error of framing again.
 pub(super) fn is_framed_alike(a: &Camera, b: &Camera) -> bool {
     let apart = glam::DVec3::from(a.target).distance(b.target.into()) + (a.distance - b.distance).abs();
     apart < 1e-6
 }
 
 impl App {
-    /// Turns the object over or stands it up otherwise, on the floor again and as much in the picture as it was. The
-    /// data stay where they are: camera and lights turn.
+    /// Turns the object over or upright, back on the floor and framed as it was. The voxels stay in place: camera and
+    /// lights turn.
     pub(in crate::app::shell) fn turn_object(&mut self, turn: ObjectTurn, ctx: &egui::Context) {
         if self.upright.is_busy() {
             return self.upright.waiting.push_back(Command::TurnObject(turn));
@@ -69,8 +70,8 @@ impl App {
         self.frame_first_look(turned, Then::Turn(turn, room), ctx);
     }
 
-    /// Whether the first look stands as the object does in the settings, wherever these come from. If not, it will, and
-    /// then a command is carried out that needs that.
+    /// Returns true if the first look has the up axis of the settings, wherever these come from. Otherwise it is
+    /// turned, and `then` is executed afterwards.
     pub(in crate::app::shell) fn first_look_stands(
         &mut self,
         then: Option<Command>,
@@ -79,8 +80,7 @@ impl App {
         self.first_look_stands_on(self.settings.camera.up, then, ctx)
     }
 
-    /// Whether an axis of the scene points up in the first look. If not, it will, and then a command is carried out that
-    /// needs that.
+    /// Returns true if the first look has this up axis. Otherwise it is turned, and `then` is executed afterwards.
     pub(in crate::app) fn first_look_stands_on(
         &mut self,
         up: SceneAxis,
@@ -100,7 +100,7 @@ impl App {
         false
     }
 
-    /// Starts to frame the object as it stands in a first look that was turned.
+    /// Starts framing the object in a first look that was turned.
     fn frame_first_look(&mut self, mut turned: Settings, then: Then, ctx: &egui::Context) {
         let Some(dataset) = self.viewport.dataset() else { return };
         let task = move || {
@@ -114,11 +114,11 @@ impl App {
         }
     }
 
-    /// Takes in how the first look is framed. Returns the commands that have waited for it.
+    /// Takes over the framed first look from its thread. Returns the commands that have waited for it.
     pub(in crate::app) fn take_framed(&mut self) -> Vec<Command> {
         let Some(framing) = &self.upright.framing else { return Vec::new() };
         let Some(framed) = framing.work.take() else { return Vec::new() };
-        // Somebody may have gone a step back meanwhile, or the lights may have come to their places.
+        // An undo or the light placement may have intervened.
         let is_of_this = framing.of == self.defaults && framing.up == self.settings.camera.up;
         let Some(Framing { then, .. }) = self.upright.framing.take() else { return Vec::new() };
         let mut commands = Vec::new();
@@ -137,7 +137,7 @@ impl App {
         commands
     }
 
-    /// The room has turned, and the first look with it.
+    /// Applies a turn of the room, together with the first look framed for it.
     fn turned(&mut self, room: RoomTurn, framed: Settings) {
         let was_framed = is_framed_alike(&self.settings.camera, &self.defaults.camera);
         self.settings.turn_room(room);
@@ -149,7 +149,7 @@ impl App {
         self.remember_up();
     }
 
-    /// Remembers for the folder of the volume how it stands. A file that says where the head is says nothing of others.
+    /// Remembers the up axis for the volume's folder. An anatomical orientation says nothing about other files.
     pub(in crate::app::shell) fn remember_up(&mut self) {
         if let Some(volume) = self.volume.as_ref().filter(|volume| !volume.is_anatomical) {
             self.memory.stood(&volume.source, self.settings.camera.up);

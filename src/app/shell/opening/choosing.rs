@@ -1,4 +1,4 @@
-//! Another volume of the file that is open.
+//! Switching to another series, channel, time step or component of the open file.
 
 use eframe::egui;
 
@@ -9,7 +9,7 @@ use crate::app::{App, text};
 use crate::data::load::{Aspect, Choice};
 
 impl App {
-    /// Shows what there is to choose from.
+    /// Opens the chooser of an aspect of the open file.
     pub(crate) fn choose(&mut self, aspect: Aspect) {
         let held = self.volume.as_ref().map(|volume| &volume.held);
         match held.and_then(|held| Alternatives::of(held, aspect)) {
@@ -18,7 +18,7 @@ impl App {
         }
     }
 
-    /// Opens the volume after the one that is shown, or before it.
+    /// Opens the next or the previous volume of the open file.
     pub(crate) fn step_choice(&mut self, aspect: Aspect, is_forward: bool, ctx: &egui::Context) {
         let held = self.volume.as_ref().map(|volume| &volume.held);
         let Some(all) = held.and_then(|held| Alternatives::of(held, aspect)) else {
@@ -31,11 +31,12 @@ impl App {
         }
     }
 
-    /// Opens another volume of the open file; what is shown stays until it is there, and the look beyond that if wanted.
+    /// Opens another volume of the open file; the current one stays until it is ready, and `keeps_look` keeps the
+    /// look for it.
     pub(crate) fn take_choice(&mut self, choice: &Choice, keeps_look: bool, ctx: &egui::Context) {
         let Some(volume) = &self.volume else { return };
         if volume.held.choice() == *choice {
-            // What was on its way is not wanted any more.
+            // Cancels a choice in progress.
             self.loader.cancel();
             return;
         }

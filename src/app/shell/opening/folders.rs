@@ -1,4 +1,4 @@
-//! What the user brings to the window at once, and what lies beside the open file.
+//! Dropped files and folders, and the next and previous file of a folder.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -14,10 +14,10 @@ use crate::app::{App, text};
 use crate::data::Volume;
 use crate::data::load::{LoadControl, neighbour};
 
-/// Endings of files that may be slices of one volume; DICOM files often have none.
+/// File extensions of possible slices of one volume; DICOM files often have none.
 const SLICES: [&str; 9] = ["dcm", "dicom", "ima", "png", "jpg", "jpeg", "bmp", "tif", "tiff"];
 
-/// The search for the next file.
+/// Running search for the next or previous file.
 #[derive(Debug)]
 pub(in crate::app) struct Neighbour {
     control: Arc<LoadControl>,
@@ -31,25 +31,25 @@ impl Drop for Neighbour {
     }
 }
 
-/// How much a volume has in common with the one before.
+/// Similarity of the next volume to the open one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Likeness {
-    /// The same kind of data in the same grid: even the view is worth keeping.
+    /// Same kind of data in the same grid: even the view is worth keeping.
     Grid,
-    /// The same kind of data.
+    /// Same kind of data in another grid.
     Kind,
-    /// Nothing that would be seen well with the same look.
+    /// Different data, for which the look is useless.
     Nothing,
 }
 
 impl Likeness {
-    /// How alike the next volume is to the open one. Looks refer to values: where those have another range, one would show
-    /// nothing of the other.
+    /// Compares the next volume with the open one. Looks refer to values: with another range, a look would show
+    /// nothing of the next volume.
     pub(super) fn of(open: &VolumeFacts, next: &Volume) -> Self {
         let is_same_kind = std::mem::discriminant(&open.kind) == std::mem::discriminant(&next.kind().kind);
         let (a, b) = (open.ranges.robust, next.ranges().robust);
         let shared = a.high.min(b.high) - a.low.max(b.low);
-        // Half of the longer range: as scans of one protocol have in common, and those of two seldom.
+        // Half of the longer range: usual between scans of one protocol, rare between scans of two protocols.
         let are_same_values = 2.0 * shared >= a.span().max(b.span());
         let spacing: [f64; 3] = next.spacing_mm().into();
         match is_same_kind && are_same_values {
@@ -61,8 +61,8 @@ impl Likeness {
 }
 
 impl App {
-    /// Opens what was dropped on the window: a file or a folder. Several files of one kind in one folder are slices of a
-    /// volume, and no others are; of files that cannot be that the first is opened.
+    /// Opens files that were dropped on the window. Several files of one type in one folder are slices of a volume;
+    /// of other files the first is opened.
     pub(crate) fn open_dropped(&mut self, paths: &[PathBuf], ctx: &egui::Context) {
         let Some(first) = paths.first() else { return };
         if let Some(folder) = slices_of(paths) {
@@ -71,7 +71,7 @@ impl App {
                 self.messages.note(text::opening::folder_of_dropped(paths.len(), folder));
                 return;
             }
-            // It was said of another file.
+            // The message was about another file.
             self.messages.dismiss();
             let reading = Reading { among: Some(paths.into()), ..Reading::default() };
             if self.start_loading(folder, reading, ctx) {
@@ -86,9 +86,9 @@ impl App {
         }
     }
 
-    /// Looks for the file after the open one in its folder, or before it.
+    /// Searches the folder for the file after or before the open one.
     pub(crate) fn seek_neighbour(&mut self, is_forward: bool, ctx: &egui::Context) {
-        // Whoever presses the key again goes on from what is being opened.
+        // Pressing the key again goes on from the file that is being opened.
         let opening = self.loader.progress().map(|progress| progress.source.to_owned());
         let from = opening.or_else(|| self.volume.as_ref().map(|volume| volume.source.clone()));
         let Some(from) = from.filter(|from| from.exists()) else {
@@ -96,7 +96,7 @@ impl App {
         };
         let control = Arc::new(LoadControl::new());
         let watched = Arc::clone(&control);
-        // Pictures that carry a look are no volumes.
+        // Pictures with an embedded look are no volumes.
         let task = move || neighbour(&from, is_forward, |path| !files::carries_look(path), &watched);
         match Work::start("next-file", ctx, task) {
             Ok(work) => self.neighbour = Some(Neighbour { control, work, is_forward }),
@@ -104,7 +104,7 @@ impl App {
         }
     }
 
-    /// Opens what was found.
+    /// Opens the file that the search has found.
     pub(crate) fn take_neighbour(&mut self, ctx: &egui::Context) {
         let Some(neighbour) = &self.neighbour else { return };
         let Some(found) = neighbour.work.take() else { return };
@@ -122,12 +122,12 @@ impl App {
     }
 }
 
-/// In small letters.
+/// File extension in lower case, without the dot.
 fn ending(path: &Path) -> Option<String> {
     path.extension().map(|ending| ending.to_string_lossy().to_lowercase())
 }
 
-/// Whether a folder has no other files of the kind of some of its files. Hidden ones are not meant.
+/// Returns true if a folder has no further files of the same type, apart from hidden ones.
 fn is_all_of(folder: &Path, paths: &[PathBuf]) -> bool {
     let Some(kind) = paths.first().map(|path| ending(path)) else { return false };
     let is_other = |path: &Path| {
@@ -135,11 +135,11 @@ fn is_all_of(folder: &Path, paths: &[PathBuf]) -> bool {
         !is_hidden && ending(path) == kind && path.is_file()
     };
     let found = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
-    // Many may lie there: one more than these is enough.
+    // Large folders: one file more than these is enough.
     found.filter(|path| is_other(path)).take(paths.len() + 1).count() <= paths.len()
 }
 
-/// The folder of files that may be slices of one volume: all of one kind, in one folder.
+/// Returns the folder of files that may be slices of one volume: all of one type, in one folder.
 fn slices_of(paths: &[PathBuf]) -> Option<&Path> {
     let (first, others) = paths.split_first()?;
     let is_slice = ending(first).is_none_or(|ending| SLICES.contains(&ending.as_str()));

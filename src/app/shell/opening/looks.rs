@@ -1,4 +1,4 @@
-//! Looks that come from files: laid over what is open, or over the volume that they name, which is opened first.
+//! Opening of looks from files: applied to the open volume, or to the volume that they name, which is opened first.
 
 use std::path::{Path, PathBuf};
 
@@ -14,8 +14,8 @@ use crate::data::ValueRanges;
 use crate::model::{Record, Settings, VolumePlace, VolumeRecord};
 
 impl App {
-    /// Takes over the look of a session, a preset or a picture. If it is of another volume than the open one,
-    /// that is opened first; a preset is of any volume.
+    /// Opens the look of a session, a preset or a picture. A volume that it names is opened first, unless it is open;
+    /// a preset fits any volume.
     pub(crate) fn open_record(&mut self, path: &Path, ctx: &egui::Context) {
         let of = path.to_owned();
         self.read_file(Reason::Open, path, ctx, files::load_record, move |app, read, ctx| match read {
@@ -24,7 +24,7 @@ impl App {
         });
     }
 
-    /// Opens a file that is a volume or carries a look, whichever it is.
+    /// Opens a file that is either a volume or a look.
     pub(super) fn open_either(&mut self, path: &Path, ctx: &egui::Context) {
         let of = path.to_owned();
         let read = |path: &Path| {
@@ -46,7 +46,7 @@ impl App {
         });
     }
 
-    /// Takes over a look that was read from a file.
+    /// Applies a look that was read from a file.
     fn open_look(&mut self, record: Record, path: &Path, ctx: &egui::Context) {
         let open = self.volume_record().map(|(_, content_id)| content_id);
         match record.volume.clone() {
@@ -62,7 +62,7 @@ impl App {
         }
     }
 
-    /// Where the volume of a record is; beside it is also what may be opened without a question.
+    /// Returns the location of a record's volume; `Beside` includes files that may be opened without a confirmation.
     pub(super) fn place_of(&self, volume: &VolumeRecord, record: &Path) -> VolumePlace {
         match volume.place(record.parent()) {
             VolumePlace::Elsewhere(path) if self.is_trusted(record, &path) => VolumePlace::Beside(path),
@@ -70,17 +70,17 @@ impl App {
         }
     }
 
-    /// Whether a record may open a file that is not beside it: the program's own may, and others what the user has
-    /// opened before.
+    /// Returns true if a record may open a file outside its own folder: records of this program may, and others may
+    /// open what the user has opened before.
     fn is_trusted(&self, record: &Path, volume: &Path) -> bool {
         let is_known = || self.memory.recent().iter().any(|known| known.path == volume);
         self.trusts_paths || self.memory.is_own(record) || is_known()
     }
 
-    /// Takes over a look for whichever volume is open, or is being opened.
+    /// Applies a look to the volume that is open or being opened.
     fn use_look(&mut self, record: Record, ctx: &egui::Context) {
         if self.loader.progress().is_some() {
-            // What is being opened is what the user will see it on.
+            // The user will see it on the volume that is being opened.
             self.pending = Some(PendingLook::Record(Box::new(record)));
         } else if self.volume_record().is_none() {
             self.open_with(Path::new(DEFAULT_SOURCE), record, ctx);
@@ -97,11 +97,11 @@ impl App {
         }
     }
 
-    /// Shows the question whether a look may open its volume, and does what the user says.
+    /// Asks for confirmation before a look opens its volume, and handles the answer.
     pub(crate) fn ask_for_volume(&mut self, frame: &eframe::Frame, ctx: &egui::Context) {
         let Some(answer) = self.foreign_path.ui(ctx) else { return };
         if answer == Answer::Choose {
-            // It stays open: choosing may be cancelled.
+            // The dialog stays open, since choosing may be cancelled.
             return self.files.ask(Purpose::VolumeOfLook, frame, ctx);
         }
         match self.foreign_path.take() {
@@ -111,7 +111,7 @@ impl App {
         }
     }
 
-    /// Opens what the user has chosen for the look that was asked about.
+    /// Opens the file that the user has chosen for the look in question.
     pub(crate) fn open_for_look(&mut self, path: &Path, ctx: &egui::Context) {
         match self.foreign_path.take() {
             Some((record, _)) => self.open_with(path, record, ctx),
@@ -119,7 +119,7 @@ impl App {
         }
     }
 
-    /// Takes over a look for the open volume, whatever volume it was made for.
+    /// Applies the look of a file to the open volume, even if it was made for another one.
     pub(crate) fn load_settings(&mut self, path: &Path, ctx: &egui::Context) {
         self.read_file(Reason::Look, path, ctx, files::load_record, |app, read, _ctx| match read {
             Ok(record) => {
@@ -144,27 +144,27 @@ impl App {
         });
     }
 
-    /// The values of the open volume.
+    /// Returns the ranges of values of the open volume.
     pub(crate) fn value_ranges(&self) -> ValueRanges {
         self.volume.as_ref().map_or(ValueRanges::UNIT, |volume| volume.ranges)
     }
 
-    /// The settings with a record laid over them, for a volume with these values.
+    /// Applies a record to a copy of the settings, for a volume with these ranges of values.
     pub(crate) fn with_record(&mut self, record: &Record, ranges: &ValueRanges) -> Result<Settings, String> {
         let (settings, warnings) = record.apply(&self.settings, ranges).map_err(|err| err.to_string())?;
         if !warnings.is_empty() {
             self.messages.note(warnings.join("; "));
         }
         let mut settings = settings;
-        // A look in which nothing is kept takes nothing away.
+        // A look without saved views leaves the existing ones.
         if settings.kept.is_empty() {
             settings.kept.clone_from(&self.settings.kept);
         }
         Ok(settings)
     }
 
-    /// Lays a record over the settings; whether that could be done. It corrects the volume, if that is the one that it is
-    /// of.
+    /// Applies a record to the settings and returns true if it succeeded. Its corrections are applied only to the
+    /// volume for which they were made.
     pub(super) fn apply_record(
         &mut self,
         record: &Record,
@@ -190,12 +190,12 @@ impl App {
         }
     }
 
-    /// The open volume, for records.
+    /// Returns path and identifier of the open volume, for records.
     pub(crate) fn volume_record(&self) -> Option<(&Path, u64)> {
         Some((&self.volume.as_ref()?.source, self.opened_id()?))
     }
 
-    /// Where Ctrl+S writes, if it may; else why not is said.
+    /// Returns the path to which Ctrl+S writes; if the file is protected, shows the reason and returns `None`.
     pub(crate) fn session_to_save(&mut self) -> Option<PathBuf> {
         let session = self.session.as_ref()?;
         let Some((path, why)) = session.protection() else { return Some(session.path().to_owned()) };

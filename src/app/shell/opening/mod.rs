@@ -1,4 +1,4 @@
-//! Opens volumes and looks: what takes the place of what, and which settings a volume is shown with.
+//! Opening of volumes and looks: precedence between requests, and the settings with which a volume is shown.
 
 mod choosing;
 mod folders;
@@ -28,28 +28,28 @@ use crate::model::{Length, ObjectTurn, Record, Settings, VolumePlace, made_by};
 use self::folders::Likeness;
 pub(in crate::app) use self::folders::Neighbour;
 
-/// What is opened when nothing is named.
+/// Volume that is opened when none is named.
 const DEFAULT_SOURCE: &str = "builtin:chair";
 
-/// A look that waits for the volume that is being opened.
+/// Look that waits for the volume that is being opened.
 #[derive(Debug)]
 pub(in crate::app) enum PendingLook {
-    /// A file's: laid over the volume's first look.
+    /// Look of a file, applied to the first look of the volume.
     Record(Box<Record>),
-    /// Every setting, whatever the first look is.
+    /// All settings, replacing the first look.
     Settings(Box<Settings>),
-    /// The look as it is when the volume is there.
+    /// Current look at the time when the volume is ready.
     Current,
-    /// That look, as far as the volume is like the one before.
+    /// Current look, if the volume is similar enough to the one before.
     IfAlike,
 }
 
 impl App {
-    /// Opens a file or a built-in volume, or the volume of a session or of an exported picture with the look
-    /// that is kept there. What is open stays until it is there.
+    /// Opens a file or a built-in volume, or the volume of a session or exported picture with the look stored there.
+    /// The open volume stays until the new one is ready.
     pub fn open(&mut self, source: impl AsRef<Path>, ctx: &egui::Context) {
         let source = source.as_ref();
-        // It was said of another file.
+        // The message was about another file.
         self.messages.dismiss();
         if files::is_record(source) {
             self.open_either(source, ctx);
@@ -65,14 +65,14 @@ impl App {
         }
     }
 
-    /// Opens one of several volumes of a file; what the command line says of which counts more than what was remembered.
+    /// Opens one of several volumes of a file; a choice on the command line has precedence over a remembered one.
     pub(crate) fn open_chosen(&mut self, source: &Path, choice: &Choice, ctx: &egui::Context) {
         if self.start_loading(source, self.reading_of(choice), ctx) {
             self.pending = None;
         }
     }
 
-    /// Opens a file that was open before, as it was then.
+    /// Opens a file that was open before, with the volume chosen then.
     pub(crate) fn open_again(&mut self, source: &Path, choice: &Choice, ctx: &egui::Context) {
         if choice.is_empty() {
             self.open(source, ctx);
@@ -81,13 +81,13 @@ impl App {
         }
     }
 
-    /// How a volume is read that was chosen before.
+    /// Returns the options for reading a volume that was chosen before.
     fn reading_of(&self, choice: &Choice) -> Reading {
         let said = self.loader.options().choice.clone();
         Reading { choice: Some(said.or(choice)), ..Reading::default() }
     }
 
-    /// Opens what was named at the start. A look that cannot be used leaves the default volume.
+    /// Opens the file, look or session named at the start. If a look cannot be used, the default volume is opened.
     pub(crate) fn open_first(&mut self, source: Option<&Path>, volume: Option<&Path>, ctx: &egui::Context) {
         match (source, volume) {
             (Some(look), Some(volume)) => self.open_look_with(look, volume, ctx),
@@ -97,7 +97,7 @@ impl App {
         self.open_something(Reason::Open, ctx);
     }
 
-    /// Opens the default volume where nothing is open, and what was read for that reason has led to nothing.
+    /// Opens the default volume if reading a file to open has led to nothing and no volume is open.
     pub(in crate::app) fn open_something(&mut self, reason: Reason, ctx: &egui::Context) {
         let is_empty = self.volume.is_none() && self.viewport.dataset().is_none();
         let is_busy = self.loader.progress().is_some() || self.file_tasks.is_reading(Reason::Open);
@@ -106,7 +106,8 @@ impl App {
         }
     }
 
-    /// Opens what has waited for the answer whether to reopen the last session, unless something is open or being opened.
+    /// Opens the first volume, which has waited for the user's answer about the last session, unless a volume is open
+    /// or being opened.
     pub(crate) fn open_what_waits(&mut self, ctx: &egui::Context) {
         let is_free = self.volume.is_none() && self.loader.progress().is_none() && !self.foreign_path.asks();
         if std::mem::take(&mut self.first_waits) && is_free {
@@ -114,13 +115,13 @@ impl App {
         }
     }
 
-    /// Opens the volume that the session is of, where it says so. Its look is laid over whatever volume is the first.
+    /// Opens the volume that the session names. The look of the session is applied to the first volume in any case.
     fn open_volume_of_session(&mut self, ctx: &egui::Context) {
         let session = self.session.as_ref().map(|session| session.path().to_owned());
         let Some(session) = session.filter(|path| path.exists()) else { return };
         let path = session.clone();
         self.read_file(Reason::Open, &path, ctx, files::load_record, move |app, read, ctx| {
-            // That the session cannot be read is said when it is due.
+            // An unreadable session is reported when it is applied.
             let Ok(record) = read else { return };
             let Some(volume) = record.volume.clone() else { return };
             match app.place_of(&volume, &session) {
@@ -132,13 +133,13 @@ impl App {
         });
     }
 
-    /// Opens a file of bare voxels of which the user has said how it is stored.
+    /// Opens a raw volume with the layout that the user has entered.
     pub(crate) fn open_described(&mut self, described: &Described, ctx: &egui::Context) {
-        // A look that waits for this volume goes on waiting.
+        // A look that is pending for this volume stays pending.
         let Described { path, layout, header, is_gzip } = described;
         if let Some(header) = header {
             let data_file = path.file_name().unwrap_or_default().to_string_lossy();
-            // Comments of a header follow its first line.
+            // Comments of a NRRD header follow its first line.
             let content = layout.header(&data_file, *is_gzip);
             let content = content.replacen('\n', &format!("\n# {}\n", made_by()), 1);
             match crate::export::write_atomically(header, content.as_bytes()) {
@@ -146,7 +147,7 @@ impl App {
                     self.start_loading(header, Reading::default(), ctx);
                     return;
                 }
-                // It is shown all the same.
+                // The volume is shown nevertheless.
                 Err(err) => self.messages.error(text::opening::HEADER_NOT_WRITTEN, err.to_string()),
             }
         }
@@ -154,16 +155,16 @@ impl App {
         self.start_loading(path, reading, ctx);
     }
 
-    /// Reads the open volume again with more or fewer of its voxels; the look stays.
+    /// Reads the open volume again with another subsampling; the look stays.
     pub(crate) fn thin(&mut self, thinning: Thinning, ctx: &egui::Context) {
         let Some(volume) = &self.volume else { return };
         let mut settings = self.settings.clone();
-        // Opacities refer to the same thickness, however many voxels that has.
+        // The opacity unit keeps its thickness, whatever the number of voxels.
         if let Length::Voxels(_) = settings.opacity_unit {
             let unit = settings.opacity_unit.in_scene(&volume.scene) * volume.scene.mm_per_unit;
             settings.opacity_unit = Length::Mm(unit);
         }
-        // Whether all of it has room is asked.
+        // The memory estimate is checked again.
         let portion = Some(Portion { thinning, ..volume.held.portion }).filter(|portion| !portion.is_whole());
         let choice = Some(Choice { portion, ..volume.held.choice() });
         let reading = Reading { choice, takes_all_memory: false, ..volume.reading.clone() };
@@ -174,7 +175,7 @@ impl App {
     }
 
     pub(crate) fn start_loading(&mut self, source: &Path, reading: Reading, ctx: &egui::Context) -> bool {
-        // What was asked or said of the file before is over, and so is what was to be opened.
+        // Requests and dialogs for the previous file are obsolete, and so is a file to open.
         self.file_tasks.forget(Reason::Open);
         self.file_tasks.forget(Reason::Session);
         self.raw_dialog.close();
@@ -187,7 +188,7 @@ impl App {
         started.is_ok()
     }
 
-    /// What can be undone of a volume that has just been opened: that it was corrected as the last time.
+    /// Creates the history of a volume that was just opened: remembered corrections can be undone.
     fn history_of(&self, volume: &Volume) -> History {
         let by = self.settings.volume;
         if by.is_none() || by != *volume.corrections() {
@@ -198,26 +199,26 @@ impl App {
         History::after(&Step { settings, treated_as: None })
     }
 
-    /// Identifies the file that is open.
+    /// Identifier of the open file's volume.
     pub(super) fn opened_id(&self) -> Option<u64> {
         self.viewport.dataset().map(|dataset| dataset.volume().opened_id())
     }
 
-    /// Something was found before there was a window to say it.
+    /// Records a notice from before there was a window to show it.
     pub(crate) fn remember_to_say(&mut self, found: Option<String>) {
         if let Some(notice) = found {
             self.memory.add_notice(notice);
         }
     }
 
-    /// Keeps the look as it is now, so that nothing is lost however this run ends; and says what could not be kept.
+    /// Autosaves the current look, so that nothing is lost however the run ends, and reports failures.
     pub(crate) fn keep_look(&mut self) {
         if let Some((volume, opened_id)) = self.volume.as_ref().zip(self.opened_id()) {
             self.memory.keep(&self.settings, &volume.source, opened_id, &volume.held.choice());
             if let Some(picture) = self.viewport.take_finished() {
                 self.memory.show(picture);
             }
-            // Not before there is a volume, which clears what was said.
+            // Not before there is a volume, which clears the messages.
             let notices = self.memory.take_notices();
             if !notices.is_empty() {
                 self.messages.error(text::memory::WORTH_KNOWING, notices.join("\n\n"));
@@ -225,7 +226,7 @@ impl App {
         }
     }
 
-    /// A volume is ready: it replaces the one before, once the session has been read that is due with the first.
+    /// Replaces the open volume by one that is ready; the first one waits until the session has been read.
     pub(crate) fn take_in_with_session(&mut self, opened: Opened, ctx: &egui::Context) {
         let session = self.session.as_ref().filter(|_| self.session_is_due);
         match session.map(|session| session.path().to_owned()).filter(|path| path.exists()) {
@@ -238,7 +239,7 @@ impl App {
         }
     }
 
-    /// A volume is ready, and so is the session that was to be read with it.
+    /// Replaces the open volume by one that is ready, with the session that was read for it.
     fn take_in(
         &mut self,
         opened: Opened,
@@ -249,7 +250,7 @@ impl App {
         let volume = Arc::clone(dataset.volume());
         self.messages.clear();
         self.strip.forget();
-        // What is kept is worth looking at on other volumes, too.
+        // Saved views are useful on other volumes, too.
         let kept = self.settings.kept.clone();
         let likeness = match (&self.pending, &self.volume) {
             (Some(PendingLook::IfAlike), Some(open)) => Likeness::of(open, &volume),
@@ -275,7 +276,7 @@ impl App {
         self.defaults = settings.clone();
         let is_kept = (self.keeps_look || likeness == Likeness::Kind) && self.volume.is_some();
         if is_kept {
-            // As it was, but for where the object is: that is another one, and may stand another way up.
+            // The look stays, apart from the position of the object: the new one may have another up axis.
             let mut before = std::mem::take(&mut self.settings);
             before.turn_object(ObjectTurn::Upright(settings.camera.up));
             let mut kept = Settings { camera: settings.camera.clone(), volume: settings.volume, ..before };
@@ -284,11 +285,11 @@ impl App {
         } else {
             self.settings = settings;
         }
-        // What is measured is of the volume before; a first look is balanced, a look from there is not.
+        // Measurements belong to the volume before; a first look is balanced, a kept look is not.
         self.keep_balanced = KeepBalanced::new(&self.settings, !is_kept);
         let is_named = is_kept || session_read.is_some() || self.pending.is_some() || self.adjust.is_some();
         let (ranges, opened_id) = (volume.ranges(), Some(volume.opened_id()));
-        // Session and command line speak of the first volume.
+        // Session and command line apply to the first volume only.
         self.session_is_due = false;
         if let Some(read) = session_read
             && let Some(mut session) = self.session.take()
@@ -327,12 +328,12 @@ impl App {
         if self.settings.kept.is_empty() {
             self.settings.kept = kept;
         }
-        // What somebody has chosen stays.
+        // A look that the user has chosen stays.
         self.first_lights = if is_named { FirstLights::default() } else { FirstLights::of(&self.settings) };
         self.light_search = None;
         self.contact_sheet.forget();
         self.volume = Some(VolumeFacts::of(source, reading, &dataset));
-        // With its own look, as it stands there.
+        // Treated as its own kind of data, with its own up axis.
         (self.treated, self.upright) = (Treated::default(), Upright::default());
         self.viewport.set_scene(renderer, dataset);
         self.history = self.history_of(&volume);

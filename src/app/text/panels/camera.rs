@@ -1,4 +1,4 @@
-//! The section of the camera.
+//! Texts of the camera section.
 
 use crate::app::text::{Named, named};
 use crate::model::SceneAxis;
@@ -11,7 +11,7 @@ pub(crate) const ORTHOGRAPHIC: Named =
 pub(crate) const UP: Named =
     named("Up", "Which axis of the data points up: the object stands up, lies down or stands on its head");
 
-/// An axis that can point up.
+/// Name and tooltip of an axis that can point up.
 pub(crate) const fn axis(axis: SceneAxis) -> Named {
     match axis {
         SceneAxis::PlusX => named("+x", "What is at high x is at the top"),

@@ -1,17 +1,17 @@
-//! The section of data: what the volume is.
+//! Texts of the data section: metadata and range of the open volume.
 
 use crate::app::text::common::LengthUnit;
 use crate::app::text::{Named, named};
 use crate::data::load::{Portion, Region, Thinning};
 use crate::data::{DataKind, KindName, SpacingUnit};
 
-/// In place of the section while no volume is open.
+/// Text in place of the section while no volume is open.
 pub(crate) const NOTHING_OPEN: &str = "No volume is open";
 
 pub(crate) const NAME: &str = "Name";
 pub(crate) const SOURCE: &str = "Source";
 pub(crate) const DIMENSIONS: &str = "Voxels";
-/// The voxels of the file of which fewer are shown, and the part of them that was read.
+/// Labels for a volume of which a part was read: the dimensions of the file, and the region.
 pub(crate) const SHOWN_OF: &str = "Read of";
 pub(crate) const REGION: &str = "Region";
 pub(crate) const VOXEL_TYPE: &str = "Type";
@@ -27,7 +27,7 @@ pub(crate) const THINNING: Named = named(
      finest details. The volume is read again, the look stays",
 );
 
-/// How many voxels are kept.
+/// Name and tooltip of a subsampling.
 pub(crate) fn thinning(thinning: Thinning) -> Named {
     match thinning {
         Thinning::Every(2) => named("Every second", "An eighth of the voxels, as the file has them"),
@@ -40,7 +40,7 @@ pub(crate) fn thinning(thinning: Thinning) -> Named {
     }
 }
 
-/// What of which voxels is shown: the adapter may have averaged more.
+/// Dimensions of the file with the subsampling that was applied; the adapter may have averaged further.
 pub(crate) fn shown_of(portion: &Portion, file_dims: [usize; 3]) -> String {
     let all = dimensions(file_dims);
     match portion.thinning {
@@ -49,7 +49,7 @@ pub(crate) fn shown_of(portion: &Portion, file_dims: [usize; 3]) -> String {
     }
 }
 
-/// `second`
+/// Ordinal number in English: `second`, `third`, `11th`.
 pub(crate) fn ordinal(n: usize) -> String {
     match n {
         2 => "second".to_owned(),
@@ -59,7 +59,7 @@ pub(crate) fn ordinal(n: usize) -> String {
     }
 }
 
-/// A region of a file's grid.
+/// Region that was read, within the grid of the file.
 pub(crate) fn region(region: &Region, grid: [usize; 3]) -> String {
     format!("{region} of {}", dimensions(grid))
 }
@@ -69,7 +69,7 @@ pub(crate) const TREAT_AS: Named = named(
     "Makes the first look anew, for data of another kind: transfer function, view and lights. It can be undone",
 );
 
-/// What a volume can be treated as.
+/// Name and tooltip of a kind of data that the volume can be treated as; `None` is the automatic choice.
 pub(crate) fn treatment(kind: Option<KindName>) -> Named {
     match kind {
         None => named("Automatic", "As what the file says, or else the values"),
@@ -84,7 +84,7 @@ pub(crate) fn treatment(kind: Option<KindName>) -> Named {
     }
 }
 
-/// What kind of data a volume holds.
+/// Description of the kind of data of a volume.
 pub(crate) fn kind(kind: DataKind) -> String {
     match kind {
         DataKind::Mask => "Mask".to_owned(),
@@ -116,7 +116,7 @@ pub(crate) const HIGH: Named = named(
 );
 pub(crate) const SHOWN: &str = "Shown";
 
-/// The values that are shown, and all of the file, in digits.
+/// Range of values shown within the range of the file, both formatted.
 pub(crate) fn shown([low, high]: &[String; 2], [lowest, highest]: &[String; 2]) -> String {
     format!("{low} … {high} of {lowest} … {highest}")
 }
@@ -126,23 +126,23 @@ pub(crate) const OPACITY_UNIT: Named = named(
     "The thickness of material to which the opacities of the transfer function refer: larger makes \
      everything more transparent",
 );
-/// The list of the units in which the opacity unit can be given.
+/// Accessible name of the list of units for the opacity unit.
 pub(crate) const UNITS: &str = "Unit of the opacity unit";
 pub(crate) const MILLIMETRES: Named = named("mm", "Stays the same for every volume of the same thing");
 pub(crate) const VOXELS: Named = named("voxels", "Follows the resolution of the data");
 pub(crate) const EXTENT: Named = named("extent", "A share of the longest edge of the volume");
 
-/// A length in digits, with its unit.
+/// Formatted length with its unit.
 pub(crate) fn length(digits: &str, unit: Named) -> String {
     format!("{digits} {}", unit.name)
 }
 
-/// Voxels along x, y and z.
+/// Number of voxels along x, y and z.
 pub(crate) fn dimensions([x, y, z]: [usize; 3]) -> String {
     format!("{x} × {y} × {z}")
 }
 
-/// The unit in which distances between voxels are written.
+/// Unit in which voxel spacings are displayed.
 pub(crate) fn unit_of_spacing(spacing_mm: [f64; 3], is_unknown: bool) -> LengthUnit {
     if is_unknown {
         return LengthUnit { mm: 1.0, suffix: " (unit unknown)" };
@@ -150,22 +150,22 @@ pub(crate) fn unit_of_spacing(spacing_mm: [f64; 3], is_unknown: bool) -> LengthU
     LengthUnit::of(SpacingUnit::of_spacing(spacing_mm))
 }
 
-/// Distances between voxels along x, y and z, in digits.
+/// Formatted voxel spacings along x, y and z, with their unit.
 pub(crate) fn spacing([x, y, z]: &[String; 3], unit: LengthUnit) -> String {
     format!("{x} × {y} × {z}{}", unit.suffix)
 }
 
-/// The smallest and the largest value, in digits.
+/// Formatted smallest and largest value.
 pub(crate) fn values(low: &str, high: &str) -> String {
     format!("{low} … {high}")
 }
 
-/// The memory of the voxels.
+/// Memory of the voxels, in MiB.
 pub(crate) fn memory(mebibytes: f64) -> String {
     format!("{mebibytes:.1} MiB")
 }
 
-/// How many voxels are not finite.
+/// Number of voxels that are NaN or infinite.
 pub(crate) fn not_finite(voxels: usize) -> String {
     format!("{voxels} voxels, shown as the smallest value")
 }

@@ -1,4 +1,4 @@
-//! The section of the floor.
+//! Texts of the floor section.
 
 use crate::app::text::{Named, named};
 

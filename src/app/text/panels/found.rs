@@ -1,4 +1,4 @@
-//! What else settings are called, by which they are found; in small letters.
+//! Synonyms by which the command palette finds settings, in lower case.
 
 pub(crate) const LABELS: &str = "segmentation segments classes regions table visible names colours colors";
 

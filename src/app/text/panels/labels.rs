@@ -1,4 +1,4 @@
-//! The table of labels, which stands in the place of the transfer function editor.
+//! Texts of the table of labels, which replaces the transfer function editor for label maps.
 
 use crate::app::text::{Named, named};
 
@@ -13,10 +13,10 @@ pub(crate) const VISIBLE_TIP: &str = "Whether it is there at all, for the eye an
 pub(crate) const OPACITY_TIP: &str = "Per opacity unit";
 pub(crate) const NAME_HINT: &str = "unnamed";
 
-/// Where labels are sought by name.
+/// Section name of the table in the command palette.
 pub(crate) const TITLE: &str = "Labels";
 
-/// What stands over the columns.
+/// Headings of the columns, with their tooltips.
 pub(crate) const SHOW_COLUMN: Named = named("Show", VISIBLE_TIP);
 pub(crate) const COLOR_COLUMN: Named = named("Colour", "What it looks like");
 pub(crate) const NUMBER_COLUMN: Named = named("Label", "What voxels hold; a click shows that one alone");
@@ -29,7 +29,7 @@ pub(crate) const AUTOMATIC: Named =
 pub(crate) const USE_CURVE: Named =
     named("Use a curve", "Shows numbers as values, by a curve; Automatic brings the table back");
 
-/// What screen readers call the parts of a row.
+/// Accessible names of the controls in a row.
 pub(crate) fn visible(number: i64) -> String {
     format!("Show label {number}")
 }
@@ -50,18 +50,18 @@ pub(crate) fn opacity(number: i64) -> String {
     format!("Opacity of label {number}")
 }
 
-/// How many labels are listed, of all.
+/// Number of labels listed, out of all.
 pub(crate) fn count(listed: usize, all: usize) -> String {
     if listed == all { format!("{all} labels") } else { format!("{listed} of {all} labels") }
 }
 
-/// How many voxels hold a label, in groups of three digits.
+/// Number of voxels with a label, in groups of three digits.
 pub(crate) fn voxels(count: u64) -> String {
     let digits = count.to_string();
     let mut grouped = String::new();
     for (at, digit) in digits.chars().enumerate() {
         if at > 0 && (digits.len() - at).is_multiple_of(3) {
-            // Narrow, and no line ends there.
+            // Narrow no-break space.
             grouped.push('\u{202f}');
         }
         grouped.push(digit);
@@ -69,8 +69,8 @@ pub(crate) fn voxels(count: u64) -> String {
     grouped
 }
 
-/// What a label's number tells when it is pointed at: its name, how much there is of it, and with which label it shares
-/// its look, if it does.
+/// Tooltip of a label's number: name, number of voxels, and the label whose look it shares where there are more
+/// labels than classes.
 pub(crate) fn facts(name: &str, voxels: u64, shares_with: Option<i64>) -> String {
     let name = if name.is_empty() { String::new() } else { format!("{name}: ") };
     let shares = shares_with.map_or_else(String::new, |other| format!(", with the look of label {other}"));

@@ -1,4 +1,4 @@
-//! The section of lights, their chips and their handles.
+//! Texts of the lights section, of the light chips and of the handles in the picture.
 
 use crate::app::text::{Named, named};
 
@@ -15,7 +15,7 @@ pub(crate) const WITH_CAMERA: Named =
 pub(crate) const ADD: Named = named("Add light", "Adds a light beside the camera; up to eight");
 pub(crate) const REMOVE: Named = named("Remove light", "Takes this light away; undo brings it back");
 
-/// What a light without a name is called.
+/// Name shown for a light that has none.
 pub(crate) const UNNAMED: &str = "Light";
 pub(crate) const ON_TIP: &str = "Switches this light on or off; its shadows are kept";
 pub(crate) const SELECT_TIP: &str = "Select; its handle in the picture is marked";
@@ -65,40 +65,40 @@ pub(crate) const CONE: Named = named("Cone", "From the middle of the cone to whe
 pub(crate) const RIM: Named =
     named("Falloff", "How far inside that the light begins to fade; 0 is a hard edge");
 
-/// The chip that adds a light.
+/// Caption of the chip that adds a light.
 pub(crate) const ADD_CHIP: &str = "+";
 
-/// Entries of a chip's menu.
+/// Entries in the context menu of a chip.
 pub(crate) const MUTE: &str = "Switch off";
 pub(crate) const UNMUTE: &str = "Switch on";
 pub(crate) const SOLO: &str = "Only this light";
 
-/// What a light's shadows cost, in the tip of its chip.
+/// Cost of a light's shadows in the tooltip of its chip, where there is no measurement.
 pub(crate) const NO_SHADOWS: &str = "casts no shadows";
 pub(crate) const NOT_FILLED: &str = "shadows are not filled yet";
 
-/// The switch of a light.
+/// Accessible name of the checkbox that switches a light on.
 pub(crate) fn switch(name: &str) -> String {
     format!("{name} on")
 }
 
-/// The colour of the light at a place of the list, from 1.
+/// Accessible name of the colour of a light, numbered from 1.
 pub(crate) fn color(number: usize) -> String {
     format!("Colour of light {number}")
 }
 
-/// What a new light at a place of the list is called, from 1.
+/// Default name of a new light, numbered from 1.
 pub(crate) fn numbered(number: usize) -> String {
     format!("Light {number}")
 }
 
-/// The chip of a light.
+/// Accessible name of a light's chip.
 pub(crate) fn chip(name: &str, on: bool) -> String {
     let state = if on { "on" } else { "off" };
     format!("Light {name}, {state}")
 }
 
-/// The tip of a light's chip. `shadows`: what they cost.
+/// Tooltip of a light's chip. `shadows`: cost of its shadows.
 pub(crate) fn chip_tip(name: &str, intensity: f64, shadows: &str) -> String {
     format!(
         "{name}: intensity {intensity:.2}, {shadows}\n\
@@ -106,29 +106,30 @@ pub(crate) fn chip_tip(name: &str, intensity: f64, shadows: &str) -> String {
     )
 }
 
-/// A light volume: whether all of it is there, how long it took to fill, and its memory.
+/// State of a light volume: cached or being filled, fill time and memory.
 pub(crate) fn light_volume(complete: bool, fill_ms: Option<f64>, mebibytes: f64) -> String {
     let state = if complete { "cached" } else { "being filled" };
     let ms = fill_ms.map_or_else(String::new, |ms| format!(", {ms:.0} ms"));
     format!("light volume {state}{ms}, {mebibytes:.1} MiB")
 }
 
-/// The handle by which a light is dragged.
+/// Accessible name of the handle that moves a light.
 pub(crate) fn handle(name: &str) -> String {
     format!("Light handle {name}")
 }
 
-/// The handle that opens and closes a light's hood.
+/// Accessible name of the handle that widens a spotlight's cone.
 pub(crate) fn hood_handle(name: &str) -> String {
     format!("Spotlight handle {name}")
 }
 
-/// The handle on the border of a light that has a size.
+/// Accessible name of the handle on the border of an area light.
 pub(crate) fn size_handle(name: &str) -> String {
     format!("Size handle {name}")
 }
 
-/// What adding a light does, and what one more that casts shadows costs: as the dearest of those that there are.
+/// Tooltip of the button that adds a light, with the estimated cost of its shadows: that of the most expensive light
+/// so far.
 pub(crate) fn add_tip(cost: Option<&str>) -> String {
     match cost {
         Some(cost) => format!("{}\nIts shadows take about {cost}", ADD.tip),

@@ -1,4 +1,4 @@
-//! Words of the side panels.
+//! Texts of the side panel, one module per section.
 
 pub(in crate::app) mod camera;
 pub(in crate::app) mod corrections;

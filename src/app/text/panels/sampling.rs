@@ -1,4 +1,4 @@
-//! How the light's and the eye's pass sample the volume.
+//! Texts of the sampling settings of the light pass and the eye pass.
 
 use crate::app::text::{Named, named};
 

@@ -1,4 +1,4 @@
-//! The section of light that bounces.
+//! Texts of multiple scattering: the settings of light that bounces.
 
 use crate::app::text::{Named, named};
 

@@ -1,4 +1,4 @@
-//! The section of shading.
+//! Texts of the shading section.
 
 use crate::app::text::{Named, named};
 

@@ -1,4 +1,4 @@
-//! The section of shadows.
+//! Texts of the shadows section.
 
 use crate::app::text::{Named, named};
 
@@ -15,7 +15,7 @@ pub(crate) const DIRECT: Named = named(
     "A ray to the light from every sample: the sharpest shadows; every picture takes as long as a light volume",
 );
 
-/// Where a driver that draws with the processor ends such rays early.
+/// Warning on software rasterisers, which end shadow rays to area lights early.
 pub(crate) const MANY_RAYS: &str = "This driver, which draws with the processor, ends rays to lights that have a size before they \
                                     arrive: such lights are too dark. Fine shows them as they are";
 
@@ -36,10 +36,10 @@ pub(crate) const BALANCE: Named = named(
     "Balance",
     "Multiplies the lights while shadows are on, so that the picture is as bright as without them",
 );
-/// The button that finds the balance.
+/// Button that measures the balance once.
 pub(crate) const MEASURE_BALANCE: Named =
     named("Balance brightness", "Measures the picture with and without shadows and sets the balance");
-/// The switch that has it found by itself.
+/// Checkbox that keeps the balance up to date automatically.
 pub(crate) const KEEP_BALANCED: Named = named(
     "Keep balanced",
     "Balances the brightness again when a change of lights, opacities or shadows has come to rest; a balance set \
@@ -51,7 +51,7 @@ pub(crate) const NEARLY_BLACK: Named = named(
     "Share of what is seen that is nearly black. Light opacity below 1 lets light pass thin parts, a \
      narrow Gaussian or a shadow bias frees surfaces from their own shadow, an ambient offset lifts all",
 );
-/// In place of a share that is not known yet.
+/// Text in place of a share that is not measured yet.
 pub(crate) const UNKNOWN: &str = "–";
 
 pub(crate) const LIGHT_OPACITY: Named = named(
@@ -136,33 +136,33 @@ pub(crate) const LEAST_BLOCKS: Named = named(
     "In how many blocks along the longest edge light of wide lights, of the sky and of bounces is found at least: small volumes are lit as finely as large ones",
 );
 
-/// How much of what is seen is nearly black.
+/// Percentage of the visible pixels that are nearly black.
 pub(crate) fn dark_share(share: f64) -> String {
     format!("{:.0} %", share * 100.0)
 }
 
-/// The memory of the light volumes, and whether all lights share one.
+/// Memory of the light volumes, and the way they are shared.
 pub(crate) fn light_volumes(mebibytes: f64, shared: bool) -> String {
     let kind = if shared { "one for all lights" } else { "one for each light" };
     format!("Light volumes: {mebibytes:.1} MiB, {kind}")
 }
 
-/// What a light volume takes.
+/// Estimated cost of each light volume.
 pub(crate) fn volume_cost(cost: &str) -> String {
     format!("Each light volume takes about {cost}")
 }
 
-/// What each light takes that has a size.
+/// Estimated cost of each area light.
 pub(crate) fn area_cost(cost: &str) -> String {
     format!("Each light that has a size takes about {cost}")
 }
 
-/// What something takes that there is once.
+/// Estimated cost of an effect that exists once, as the sky.
 pub(crate) fn soft_cost(cost: &str) -> String {
     format!("Takes about {cost}")
 }
 
-/// Milliseconds, where they were measured, and mebibytes.
+/// Cost in milliseconds, where measured, and in MiB.
 pub(crate) fn cost(ms: Option<f64>, mebibytes: f64) -> String {
     let memory = if mebibytes < 10.0 { format!("{mebibytes:.1} MiB") } else { format!("{mebibytes:.0} MiB") };
     match ms {

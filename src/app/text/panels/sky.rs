@@ -1,4 +1,4 @@
-//! The section of the sky.
+//! Texts of the sky section: ambient occlusion, gradients and environment maps.
 
 use crate::app::text::{Named, named};
 
@@ -14,7 +14,7 @@ pub(crate) const PICTURE: Named = named(
 );
 pub(crate) const SURROUNDINGS: Named = named("Surroundings", "The panorama whose light this is");
 pub(crate) const CHOOSE: &str = "Choose…";
-/// In place of the name of a panorama.
+/// Text in place of the name of an environment map.
 pub(crate) const NO_SURROUNDINGS: &str = "none yet: white";
 pub(crate) const INTENSITY: Named = named("Brightness", "What an open white surface gives back of it");
 pub(crate) const ZENITH: Named = named("Above", "Colour of the sky overhead");

@@ -1,12 +1,12 @@
-//! What a step of the history does, in a few words that follow "Undo" and "Undone:".
+//! Descriptions of undo steps, in a few words that follow "Undo" and "Undone:".
 
 use crate::app::text;
 use crate::model::{Camera, Cuts, Kept, Light, Output, Quality, Settings, Shadows, TransferFunction};
 
-/// Where only the kind of data changes for which the look was made.
+/// Description of a step that only changes the kind of data for which the look was made.
 pub(crate) const KIND_OF_DATA: &str = "change kind of data";
 
-/// What a step from one look to another does; `None` where nothing differs.
+/// Describes the difference between two looks; `None` where they are equal.
 pub(crate) fn of(before: &Settings, after: &Settings) -> Option<String> {
     let Settings {
         schema: _,
@@ -50,7 +50,7 @@ pub(crate) fn of(before: &Settings, after: &Settings) -> Option<String> {
     ];
     let changed: Vec<String> = parts.into_iter().flatten().collect();
     match &changed[..] {
-        // It follows what else changes, and is nobody's doing then.
+        // A new balance follows from other changes and is named only where it is the only change.
         [] => (shadows.balance.to_bits() != after.shadows.balance.to_bits())
             .then(|| "balance lights".to_owned()),
         _ if is_quality(before, after) => Some("change quality".to_owned()),
@@ -60,14 +60,14 @@ pub(crate) fn of(before: &Settings, after: &Settings) -> Option<String> {
     }
 }
 
-/// Two changes in one phrase; a verb that both have is said once.
+/// Joins two changes into one phrase, with a common verb said once.
 fn both(one: &str, other: &str) -> String {
     let verb = "change ";
     let other = if one.starts_with(verb) { other.strip_prefix(verb).unwrap_or(other) } else { other };
     format!("{one} and {other}")
 }
 
-/// Whether a level of quality was chosen, and nothing else was done.
+/// Returns true if the only change is another level of quality.
 fn is_quality(before: &Settings, after: &Settings) -> bool {
     Quality::of(after).is_some_and(|level| {
         let mut chosen = before.clone();
@@ -77,12 +77,12 @@ fn is_quality(before: &Settings, after: &Settings) -> bool {
     })
 }
 
-/// Shadows with another balance.
+/// Copies shadow settings with another balance.
 fn with_balance(shadows: &Shadows, balance: f64) -> Shadows {
     Shadows { balance, ..shadows.clone() }
 }
 
-/// A thing that was switched on or off, or else `other` that was done to it.
+/// Describes a switch that was turned on or off, or falls back to `other`.
 fn switched(name: &str, was_and_is_on: [bool; 2], other: &str) -> String {
     match was_and_is_on {
         [false, true] => format!("switch on {name}"),
@@ -99,7 +99,7 @@ fn of_camera(before: &Camera, after: &Camera) -> &'static str {
     } else if before.projection != after.projection {
         "change projection"
     } else if angles(before) != angles(after) {
-        // Whatever else it takes to keep the object in the picture.
+        // Distance and target may have changed as well, to keep the object in frame.
         "turn camera"
     } else if before.target != after.target {
         "move camera"
@@ -124,10 +124,10 @@ fn of_lights(before: &[Light], after: &[Light]) -> String {
     }
 }
 
-/// What is done to one light.
+/// Describes the change of one light.
 fn of_light(a: &Light, b: &Light) -> String {
     let name = if b.name.is_empty() { text::lights::UNNAMED } else { &b.name };
-    // What would be as it is if this alone had been done.
+    // True if `b` results from this change alone.
     let alone = |done: Light| done == *b;
     if alone(Light { name: b.name.clone(), ..a.clone() }) {
         "rename light".to_owned()
@@ -148,7 +148,7 @@ fn of_transfer(before: &TransferFunction, after: &TransferFunction) -> &'static 
     let has_all = |of: &TransferFunction, other: &TransferFunction| {
         other.points.iter().all(|point| of.points.contains(point))
     };
-    // A point beyond the ends brings another with it.
+    // Adding a point beyond the ends of the curve adds a second one with it.
     let most_added = before.points.len() + 2;
     if (before.points.len() + 1..=most_added).contains(&after.points.len()) && has_all(after, before) {
         "add point of transfer function"

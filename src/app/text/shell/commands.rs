@@ -1,4 +1,4 @@
-//! The names of commands, for menus, buttons and the list of keys, and the window that finds them.
+//! Names of commands for menus, buttons and the list of shortcuts, and texts of the command palette.
 
 use crate::app::text::data;
 use crate::data::KindName;
@@ -10,7 +10,7 @@ pub(crate) const NEXT_FILE: &str = "Next file of the folder";
 pub(crate) const PREVIOUS_FILE: &str = "Previous file of the folder";
 pub(crate) const OPEN_DROPPED: &str = "Open what was dropped";
 pub(crate) const OPEN_PATH: &str = "Open path…";
-/// The name of a command, and of the menu of what can be opened.
+/// Name of the command, and title of the submenu of built-in volumes.
 pub(crate) const OPEN_BUILT_IN: &str = "Open built-in";
 pub(crate) const TAKE_CHOICE: &str = "Show this one";
 pub(crate) const CANCEL_OPENING: &str = "Cancel";
@@ -62,7 +62,7 @@ pub(crate) const USE_LIGHTS: &str = "Use lights";
 pub(crate) const USE_LOOK: &str = "Use look";
 pub(crate) const TRY_LOOKS: &str = "Try looks…";
 
-/// Where something is set.
+/// Command that goes to a setting: its section, and its row if there is one.
 pub(crate) fn reveal(section: &str, row: Option<&str>) -> String {
     match row {
         Some(row) => format!("{section} › {row}"),
@@ -89,12 +89,12 @@ pub(crate) const INVERT_TRANSFER: &str = "Invert opacities";
 pub(crate) const IMPORT_TRANSFER: &str = "Import transfer function…";
 pub(crate) const EXPORT_TRANSFER: &str = "Export transfer function…";
 
-/// The window in which a command is found, and its field.
+/// Title and hint of the command palette.
 pub(crate) const FIND: &str = "Find a command";
 pub(crate) const FIND_HINT: &str = "What do you want to do?";
 pub(crate) const NOTHING_FOUND: &str = "No matches";
 
-/// To show all voxels of the file, every so manyth, or means of blocks.
+/// Command that rereads the volume with a subsampling.
 pub(crate) fn thin(thinning: Thinning) -> String {
     match thinning.step() {
         1 => "Voxels: all of the file".to_owned(),
@@ -102,52 +102,52 @@ pub(crate) fn thin(thinning: Thinning) -> String {
     }
 }
 
-/// To treat the volume as data of a kind, or as it is.
+/// Command that treats the volume as a kind of data; `None` is the automatic choice.
 pub(crate) fn treat_as(kind: Option<KindName>) -> String {
     format!("Treat as: {}", data::treatment(kind).name)
 }
 
-/// To look from a side.
+/// Command that looks from a standard view.
 pub(crate) fn look_from(view: &str) -> String {
     format!("Look: {view}")
 }
 
-/// To stand the object so that an axis points up.
+/// Command that turns the object so that an axis points up.
 pub(crate) fn upright(axis: &str) -> String {
     format!("Stand up: {axis} up")
 }
 
-/// To take the lights of a rig.
+/// Command that applies a light rig.
 pub(crate) fn use_rig(rig: &str) -> String {
     format!("Lights: {rig}")
 }
 
-/// To take a preset.
+/// Command that applies a preset of the transfer function.
 pub(crate) fn use_preset(title: &str) -> String {
     format!("Preset: {title}")
 }
 
-/// To take the colours of a map, perhaps from its end to its start.
+/// Command that applies a colour map, possibly reversed.
 pub(crate) fn use_colors(map: &str, reversed: bool) -> String {
     format!("Colours: {map}{}", if reversed { ", reversed" } else { "" })
 }
 
-/// Keeping a view under a digit.
+/// Command that saves a view under a digit.
 pub(crate) fn store_view(slot: u8) -> String {
     format!("Save view as {slot}")
 }
 
-/// Looking from a saved view again.
+/// Command that goes to the view saved under a digit.
 pub(crate) fn recall_view(slot: u8) -> String {
     format!("Go to saved {slot}")
 }
 
-/// The keys that keep a view.
+/// Shortcut that saves a view under a digit.
 pub(crate) fn store_view_keys(slot: u8) -> String {
     format!("Ctrl+Shift+{slot}")
 }
 
-/// The keys that look from a saved view again.
+/// Shortcut that goes to the view saved under a digit.
 pub(crate) fn recall_view_keys(slot: u8) -> String {
     format!("Ctrl+{slot}")
 }

@@ -1,49 +1,49 @@
-//! What is remembered from one run to the next, and what a session file may not lose.
+//! Texts of crash recovery, autosaved looks and protected session files.
 
 use std::fmt::Display;
 use std::path::Path;
 use std::time::Duration;
 
-/// The window that offers looks of runs that crashed.
+/// Window that offers the looks of crashed runs.
 pub(crate) const ENDED_BADLY: &str = "Reopen the last session?";
 pub(crate) const ENDED_BADLY_WHY: &str = "Chiaroscuro did not close properly. This is how it looked:";
 pub(crate) const GO_ON: &str = "Reopen";
 pub(crate) const NOT_NOW: &str = "Not now";
 pub(crate) const NOT_NOW_TIP: &str = "It stays in File, Earlier looks";
 
-/// After several starts have failed.
+/// Message of a safe start, after three starts failed.
 pub(crate) const STARTED_SAFELY: &str = "The program did not get to a picture three times. It has started without the \
      file and the session that were named, and with quick light: File, Open… opens the file, and Quality in Shadows has \
      the better light";
 
-/// Of what follows with the details.
+/// Headline of a message whose details list start-up notices.
 pub(crate) const WORTH_KNOWING: &str = "Something is not as it was";
 
-/// The window that asks before an export is given up.
+/// Window that asks for confirmation before a running export is discarded.
 pub(crate) const EXPORTING: &str = "Quit while a picture is being exported?";
 pub(crate) const EXPORTING_WHY: &str = "What has been exported so far would be discarded.";
 pub(crate) const QUIT_AFTER: &str = "Quit when it is done";
 pub(crate) const QUIT_NOW: &str = "Discard and quit";
 pub(crate) const STAY: &str = "Stay";
 
-/// Why Ctrl+S asks for another file instead of writing the session.
+/// Reasons why Ctrl+S asks for another file instead of overwriting the session.
 pub(crate) const NO_SESSION: &str = "it is no session of this program";
 pub(crate) const NEWER_SESSION: &str = "a newer version has written it";
 pub(crate) const NOT_UNDERSTOOD: &str = "not all of it was understood";
 pub(crate) const NOT_READ_YET: &str = "it has not been read yet";
 
-/// A session that Ctrl+S does not overwrite.
+/// Message for a session file that Ctrl+S does not overwrite.
 pub(crate) fn protected(file: &Path, why: &str) -> String {
     format!("{} stays as it is: {why}. Choose another file", file.display())
 }
 
-/// The name of a volume for a list, and how long ago its look was kept.
+/// Menu entry of an autosaved look: name of its volume, and its age.
 pub(crate) fn earlier_look(source: &str, ago: Duration) -> String {
     let name = Path::new(source).file_name().map_or_else(|| source.into(), |name| name.to_string_lossy());
     format!("{} · {}", name.trim_start_matches("builtin:"), since(ago))
 }
 
-/// How long ago something was.
+/// Age in words, such as `2 h ago`.
 pub(crate) fn since(ago: Duration) -> String {
     let minutes = ago.as_secs() / 60;
     match minutes {
@@ -54,23 +54,23 @@ pub(crate) fn since(ago: Duration) -> String {
     }
 }
 
-/// A file of ours was damaged, and has another name now.
+/// Notice that a corrupt state file was quarantined under another name.
 pub(crate) fn put_aside(file: &Path, aside: &Path) -> String {
     let name = aside.file_name().unwrap_or_default().to_string_lossy();
     format!("{} could not be read, and was put aside as {name}", file.display())
 }
 
-/// A file of ours is damaged, and cannot even be renamed.
+/// Notice that a corrupt state file could not even be renamed.
 pub(crate) fn not_put_aside(file: &Path, why: impl Display) -> String {
     format!("{} cannot be read, nor put aside: {why}", file.display())
 }
 
-/// Nothing will be remembered.
+/// Notice that the storage folder is unusable, so nothing will be autosaved.
 pub(crate) fn not_remembered(folder: &Path, why: impl Display) -> String {
     format!("looks cannot be kept in {}: {why}", folder.display())
 }
 
-/// The look could not be kept.
+/// Notice that the autosave of the look failed.
 pub(crate) fn not_kept(why: &str) -> String {
     format!("the look cannot be kept: {why}")
 }

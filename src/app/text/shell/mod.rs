@@ -1,4 +1,4 @@
-//! Words of menus, commands, messages and the status bar.
+//! Texts of menus, commands, messages and the status bar.
 
 pub(in crate::app) mod changes;
 pub(in crate::app) mod commands;

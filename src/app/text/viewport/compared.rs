@@ -1,4 +1,4 @@
-//! The section in which two looks are compared.
+//! Texts of the section that compares two looks.
 
 use crate::app::text::{Named, named};
 use crate::model::Variant;
@@ -23,12 +23,12 @@ pub(crate) const WITH_FILE: Named =
     named("Compare with a file…", "Settings or a preset, laid over the look as it is now");
 pub(crate) const TAKE_RIGHT: Named = named("Take the right look", "Makes the right look the current one");
 
-/// The list of looks for a side.
+/// Accessible name of the list of looks for a side.
 pub(crate) fn look(side: &str) -> String {
     format!("{side} look")
 }
 
-/// What a look is called.
+/// Name of a look in the comparison.
 pub(crate) fn variant(variant: &Variant) -> &'static str {
     match variant {
         Variant::Current => "This look",

@@ -1,4 +1,4 @@
-//! Words on the picture and around it.
+//! Texts on the picture and around it.
 
 pub(in crate::app) mod compared;
 pub(in crate::app) mod cut_handles;

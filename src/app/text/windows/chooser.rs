@@ -1,9 +1,9 @@
-//! The window that shows the volumes of a file, and the rows that open it.
+//! Texts of the chooser of series, channels, time steps and components, and of the rows that open it.
 
 use crate::app::text::{Named, named};
 use crate::data::load::{Aspect, Components, Dimension, Whole};
 
-/// The row of an aspect, with what it means.
+/// Name and tooltip of the row of an aspect.
 pub(crate) fn row(aspect: Aspect) -> Named {
     match aspect {
         Aspect::Of(Dimension::Series) => {
@@ -24,7 +24,7 @@ pub(crate) fn row(aspect: Aspect) -> Named {
     }
 }
 
-/// The title of the window.
+/// Title of the chooser window.
 pub(crate) fn title(aspect: Aspect) -> &'static str {
     match aspect {
         Aspect::Of(Dimension::Series) => "Choose a series",
@@ -35,22 +35,22 @@ pub(crate) fn title(aspect: Aspect) -> &'static str {
     }
 }
 
-/// The command that opens it.
+/// Command that opens the chooser.
 pub(crate) fn command(aspect: Aspect) -> String {
     format!("{}…", title(aspect))
 }
 
-/// The command that takes the next one, or the one before.
+/// Command that goes to the next or the previous item.
 pub(crate) fn step(aspect: Aspect, is_forward: bool) -> String {
     let what = row(aspect).name.to_lowercase();
     if is_forward { format!("Next {what}") } else { format!("Previous {what}") }
 }
 
-/// The buttons that take them.
+/// Captions of the buttons that go one item back and forward.
 pub(crate) const BACK: &str = "‹";
 pub(crate) const FORWARD: &str = "›";
 
-/// The open file holds but one.
+/// Message when the open file holds a single item of this aspect.
 pub(crate) fn none(aspect: Aspect) -> String {
     let what = match aspect {
         Aspect::Of(dimension) => dimension.plural(),
@@ -59,12 +59,12 @@ pub(crate) fn none(aspect: Aspect) -> String {
     format!("The open file does not hold several {what}")
 }
 
-/// A volume without a name of its own, from 0.
+/// Default name of an unnamed item, numbered from 0.
 pub(crate) fn numbered(dimension: Dimension, at: usize) -> String {
     format!("{} {}", row(Aspect::Of(dimension)).name, at + 1)
 }
 
-/// What all components make.
+/// Name of a scalar that is computed from all components.
 pub(crate) fn whole(whole: Whole) -> &'static str {
     match whole {
         Whole::Magnitude => "Magnitude",
@@ -73,7 +73,7 @@ pub(crate) fn whole(whole: Whole) -> &'static str {
     }
 }
 
-/// A component, from 0.
+/// Name of a component, numbered from 0: a colour where they are colours.
 pub(crate) fn component(at: usize, of: &Components) -> String {
     const COLORS: [&str; 4] = ["Red", "Green", "Blue", "Opacity"];
     const GREYS: [&str; 2] = ["Grey", "Opacity"];
@@ -85,16 +85,15 @@ pub(crate) fn component(at: usize, of: &Components) -> String {
     names.get(at).map_or_else(|| format!("Component {}", at + 1), |name| (*name).to_owned())
 }
 
-/// Which of how many is shown, and what it is called.
+/// Position, count and name of the item shown.
 pub(crate) fn present(at: usize, count: usize, name: &str) -> String {
     format!("{} of {count} · {name}", at + 1)
 }
 
-/// Characters of a name beside the name of the file: dyes and arrays have as many.
+/// Maximum number of characters of an item's name beside the file name; dyes and arrays fit.
 const LONGEST_BESIDE_TITLE: usize = 20;
 
-/// What is shown, beside the name of the file: a component by its name, all else by its number, with its name where it has
-/// one.
+/// Item beside the file name in the title: a component by name, others by number, with a name where there is one.
 pub(crate) fn beside_title(aspect: Aspect, at: usize, count: usize, name: Option<&str>) -> String {
     let name = name.unwrap_or_default();
     if aspect == Aspect::Component {
@@ -108,23 +107,23 @@ pub(crate) fn beside_title(aspect: Aspect, at: usize, count: usize, name: Option
     }
 }
 
-/// Which it is of how many.
+/// Position of the item, from 1, and the count.
 pub(crate) fn place(at: usize, count: usize) -> String {
     format!("{} of {count}", at + 1)
 }
 
-/// Voxels along x, y and z.
+/// Number of voxels along x, y and z.
 pub(crate) fn size([x, y, z]: [u64; 3]) -> String {
     format!("{x} × {y} × {z} voxels")
 }
 
-/// The one that is shown already.
+/// Mark of the item that is shown already.
 pub(crate) const SHOWN: &str = "shown";
 
-/// Of colours.
+/// Note for colours, which are shown as luminance.
 pub(crate) const NO_COLORS: &str = "Colours are not shown yet: choose their luminance or one of them";
 
-/// Below the list.
+/// Keyboard hint below the list.
 pub(crate) const KEYS: &str = "Arrow keys and Enter choose, Esc closes";
 pub(crate) const KEEP_LOOK: Named = named(
     "Keep the look",

@@ -1,4 +1,4 @@
-//! The export window.
+//! Texts of the export dialog for pictures and turntables.
 
 use std::fmt::Display;
 
@@ -6,12 +6,12 @@ use crate::app::text::{Named, named};
 
 pub(crate) const TITLE: &str = "Export picture or turntable";
 
-/// What is written over a picture.
+/// Annotations drawn over an exported picture.
 pub(crate) const MARKS: &str = "Marks";
 pub(crate) const SCALE_BAR: Named = named("Scale bar", "How long things are, at the middle of the view");
 pub(crate) const LETTERS: Named =
     named("Orientation letters", "Which side of a body is where, if the file says it");
-/// The tip where there are none.
+/// Tooltip where the orientation of the body is unknown.
 pub(crate) const NO_LETTERS_TIP: &str = "The file does not say which side of a body is where";
 pub(crate) const LEGEND: Named = named("Legend", "Which colour stands for which value or label");
 pub(crate) const SHOW_IN_FOLDER: &str = "Show in folder";
@@ -20,21 +20,21 @@ pub(crate) const NO_FOLDER: &str = "The folder cannot be shown";
 pub(crate) const NO_BYTES: &str = "the picture has no bytes";
 pub(crate) const EXPORT: &str = "Export";
 
-/// What is made.
+/// Subject of the export: a picture or an animation.
 pub(crate) const STILL: Named = named("Picture", "What the window shows, at any size");
 pub(crate) const TURNTABLE: Named =
     named("Turntable", "The camera goes once around the volume; the light stays");
 pub(crate) const LIGHT_TURN: Named =
     named("Light turntable", "The selected light goes once around the vertical axis");
 
-/// Files for a picture.
+/// File formats of a picture, with their tooltips.
 pub(crate) const PNG: Named = named("PNG", "For papers, slides and the web");
 pub(crate) const PNG_16: Named =
     named("PNG, 16 bit", "For prints and for changing colours afterwards: smooth shading stays smooth");
 pub(crate) const EXR: Named =
     named("EXR", "Light before the tone map, linear, for programs that grade and composite");
 
-/// Files for a turn.
+/// File formats of a turntable, with their tooltips.
 pub(crate) const APNG: Named = named("Animated PNG", "Every colour, and transparency; browsers show it");
 pub(crate) const GIF: Named = named("GIF", "256 colours; everything shows it");
 pub(crate) const MP4: Named = named("MP4", "A video for slides; needs ffmpeg on this computer");
@@ -43,10 +43,10 @@ pub(crate) const FOLDER: Named = named("Image sequence", "A folder of PNG files,
 pub(crate) const SIZE: &str = "Size";
 pub(crate) const WIDTH: &str = "Width";
 pub(crate) const HEIGHT: &str = "Height";
-/// Behind the width and the height.
+/// Suffix of width and height.
 pub(crate) const PIXELS: &str = " px";
 
-/// Sizes to choose from.
+/// Sizes offered for the picture.
 pub(crate) const WINDOW: &str = "Window";
 pub(crate) const TWICE_WINDOW: &str = "2 × window";
 pub(crate) const FULL_HD: &str = "1920 × 1080";
@@ -58,61 +58,61 @@ pub(crate) const SAMPLES: Named = named(
     "More samples smooth edges and thin structures, and take as many times longer",
 );
 
-/// The length of a turntable.
+/// Number of frames of a turntable.
 pub(crate) const TURN_PICTURES: &str = "Frames";
 pub(crate) const TURN_PICTURES_UNIT: &str = " frames";
-/// How fast a turntable goes by.
+/// Frame rate of a turntable, in frames per second.
 pub(crate) const RATE: &str = "Frame rate";
 pub(crate) const RATE_UNIT: &str = " per second";
 
 pub(crate) const TRANSPARENT: Named =
     named("Transparent background", "Leaves the background out, for placing the picture on something else");
-/// The tip while it cannot be had.
+/// Tooltip while transparency is unavailable.
 pub(crate) const NOT_TRANSPARENT_TIP: &str = "MP4 has no transparency";
 
 pub(crate) const FILE: &str = "File";
-/// Opens a dialog for the file.
+/// Button that opens the file dialog.
 pub(crate) const CHOOSE: &str = "Choose…";
 
-/// What is being done while nothing can be counted.
+/// Progress text while there is nothing to count.
 pub(crate) const RENDERING: &str = "rendering at full quality";
 
-/// How large a picture is in print.
+/// Print size of a picture at 300 dpi, in mm.
 pub(crate) fn on_paper(width_mm: f64, height_mm: f64) -> String {
     format!("{width_mm:.0} × {height_mm:.0} mm at 300 dpi")
 }
 
-/// What screen readers call a choice of samples.
+/// Accessible name of a number of samples per pixel.
 pub(crate) fn samples(count: u32) -> String {
     format!("{count} samples per pixel")
 }
 
-/// How long a turn takes.
+/// Duration of one turn, in seconds.
 pub(crate) fn seconds(seconds: f64) -> String {
     format!("{seconds:.1} s")
 }
 
-/// How far the export of a picture is.
+/// Progress of a picture, in tiles.
 pub(crate) fn parts_done(done: u32, total: u32) -> String {
     format!("{done} of {total} parts")
 }
 
-/// How far the export of a turntable is.
+/// Progress of a turntable, in frames.
 pub(crate) fn pictures_done(done: u32, total: u32) -> String {
     format!("{done} of {total} frames")
 }
 
-/// The system is out of threads.
+/// Error when the export thread cannot be spawned.
 pub(crate) fn no_thread(err: impl Display) -> String {
     format!("no thread for the export: {err}")
 }
 
-/// Where a file goes.
+/// Path of the file that will be written.
 pub(crate) fn goes_to(path: &std::path::Path) -> String {
     format!("Goes to {}", path.display())
 }
 
-/// How long an export still takes.
+/// Estimated remaining time of an export.
 pub(crate) fn left(left: std::time::Duration) -> String {
     match left.as_secs() {
         0..90 => format!("{} s left", left.as_secs().max(1)),

@@ -1,4 +1,4 @@
-//! Words of windows over the main one.
+//! Texts of tool windows and dialogs.
 
 pub(in crate::app) mod chooser;
 pub(in crate::app) mod contact_sheet;

@@ -1,21 +1,20 @@
-//! What people look for by words that nothing in the program is called, and what is said to that. Words are in small
-//! letters.
+//! Synonyms of the command palette, in lower case: search words that are not in the program's names, with notes.
 
-/// Words by which something is sought, and what is said where it is found or where it is not there.
+/// Search words of the palette, with a note for a match or a missing feature.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Sought {
-    /// Words that people say.
+    /// Search words, separated by spaces.
     pub words: &'static str,
-    /// Beside what is found, or instead of it.
+    /// Note shown beside the match, or in its place.
     pub note: &'static str,
 }
 
-/// Something that the program has by another name, which says enough.
+/// Makes an entry whose match needs no note.
 const fn words(words: &'static str) -> Sought {
     noted(words, "")
 }
 
-/// Something of which more is to be said than its name does.
+/// Makes an entry with a note for its match.
 const fn noted(words: &'static str, note: &'static str) -> Sought {
     Sought { words, note }
 }

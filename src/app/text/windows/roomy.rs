@@ -1,22 +1,22 @@
-//! The question how much of a large volume is read.
+//! Texts of the dialog that asks how much of a large volume to load.
 
 use crate::app::text::data::{dimensions, ordinal};
 use crate::data::load::{Size, human_bytes};
 
 pub(crate) const TITLE: &str = "A large volume: how much of it?";
 
-/// What the file holds.
+/// Name, dimensions, voxel type and size of the volume.
 pub(crate) fn holds(source: &str, size: &Size) -> String {
     let bytes = human_bytes(size.bytes().into());
     format!("{source} holds {} voxels of {}, {bytes}", dimensions(size.dims), size.voxel_type.name())
 }
 
-/// What the whole volume would take of the memory, and what there is.
+/// Host memory that the whole volume would take, and the free memory.
 pub(crate) fn memory(needed: u64, free: u64) -> String {
     format!("Memory: all of it takes {}, {} are free", human_bytes(needed.into()), human_bytes(free.into()))
 }
 
-/// What the whole volume would take of the graphics adapter, and how many voxels that holds, if not all.
+/// GPU memory that the whole volume would take, and the dimensions that fit, if fewer.
 pub(crate) fn adapter(needed: u64, held: Option<[usize; 3]>) -> String {
     let needed = human_bytes(needed.into());
     match held {
@@ -27,13 +27,13 @@ pub(crate) fn adapter(needed: u64, held: Option<[usize; 3]>) -> String {
     }
 }
 
-/// What a part takes, and what there is to say of that.
+/// Dimensions and memory of a part, with a caveat if there is one.
 pub(crate) fn takes(dims: [usize; 3], bytes: u64, but: Option<&str>) -> String {
     let taken = format!("{} voxels, {}", dimensions(dims), human_bytes(bytes.into()));
     but.map_or(taken.clone(), |but| format!("{taken}: {but}"))
 }
 
-/// A part has no room either, takes most of it, or more than the graphics adapter has.
+/// Caveats of a part: exceeds the memory, takes most of it, or exceeds the graphics adapter.
 pub(crate) const TOO_MUCH: &str = "too much";
 pub(crate) const TIGHT: &str = "most of what is free";
 pub(crate) const AVERAGED: &str = "the graphics adapter shows means of it";

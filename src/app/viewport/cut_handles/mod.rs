@@ -1,5 +1,5 @@
-//! Handles in the picture for the crop box and the clip plane: the sides of the box are drawn along their
-//! axes, the plane along its normal, and its normal is turned by the tip of an arrow.
+//! Handles for the crop box and the clip plane in the picture: the faces of the box are dragged along their axes, the
+//! plane along its normal, and the normal is rotated by the tip of an arrow.
 
 mod outline;
 
@@ -15,34 +15,34 @@ use crate::app::text;
 use crate::math::SceneSpace;
 use crate::model::{CropBox, MAX_PLANE_OFFSET, MIN_CROP, Settings};
 
-/// Length of the plane's arrow, in scene units.
+/// Length of the clip plane's arrow, in scene units.
 const ARROW: f64 = 0.35;
-/// How far a notch of the wheel moves the plane: a hundredth of the volume's longest edge.
+/// Displacement of the plane per notch of the wheel, in scene units: a hundredth of the volume's longest edge.
 const OFFSET_PER_NOTCH: f64 = 0.02;
-/// Half the edge of a side's handle, in points.
+/// Half the edge length of a square handle, in points.
 const SIDE: f32 = 5.5;
 
-/// A drag that is under way.
+/// Drag in progress on one of the handles.
 #[derive(Debug, Clone, Copy)]
 struct Drag {
     id: Id,
-    /// From the pointer to the handle.
+    /// Offset from the pointer to the handle, in points.
     grip: Vec2,
-    /// What the plane is turned about, and whether its arrow points away from the eye.
+    /// Centre of rotation of the plane in scene space, and whether its arrow points away from the eye.
     pivot: DVec3,
     behind: bool,
 }
 
-/// State of the handles between frames.
+/// State of the cut handles between frames.
 #[derive(Debug, Default)]
 pub(crate) struct CutHandles {
     drag: Option<Drag>,
-    /// The pointer is on the plane's handle, where the wheel moves the plane.
+    /// True if the pointer is on the plane's handle, where the wheel moves the plane.
     pub takes_wheel: bool,
 }
 
 impl CutHandles {
-    /// Shows the handles of what is on, lets the user drag them, and changes the cuts.
+    /// Shows the handles of the active cuts, lets the user drag them, and changes the cuts.
     pub(crate) fn show(
         &mut self,
         ui: &Ui,
@@ -88,7 +88,7 @@ impl CutHandles {
                 let Some(position) = view_projection.point(at) else { continue };
                 let name = text::cut_handles::crop_side(axis, is_high);
                 let id = Id::unique("crop side").with((axis, is_high));
-                // Those of sides beyond the picture wait at its border.
+                // Handles of faces outside the picture are clamped to its border.
                 let waits = within(painter.clip_rect(), position);
                 let (response, to) = self.interact(ui, id, &name, waits, DVec3::ZERO, false);
                 if let Some(to) = to
@@ -132,7 +132,7 @@ impl CutHandles {
         let to_eye = view_projection.camera.scene_from_view().z_axis;
         let behind = normal.dot(to_eye) < 0.0;
 
-        // The tip first, so that where both lie on each other the plane is moved.
+        // The tip comes first, so that where both handles overlap, the plane is moved.
         let id = Id::unique("plane tip");
         let (turned, to) = self.interact(ui, id, text::cut_handles::PLANE_DIRECTION, end, middle, behind);
         if let (Some(to), Some(drag)) = (to, self.drag) {
@@ -148,7 +148,7 @@ impl CutHandles {
         {
             plane.offset += distance;
         }
-        // The wheel goes through the volume, whether the plane is seen from the side or faces the eye.
+        // The wheel moves the plane along its normal, whether it is seen edge-on or face-on.
         if moved.hovered() || moved.dragged() {
             self.takes_wheel = true;
             plane.offset += wheel_notches(ui) * OFFSET_PER_NOTCH;
@@ -163,7 +163,7 @@ impl CutHandles {
         }
     }
 
-    /// A handle: the response, and while it is dragged the place to which it goes.
+    /// Interacts with one handle. Returns the response, and while it is dragged, the new position in points.
     fn interact(
         &mut self,
         ui: &Ui,
@@ -183,7 +183,7 @@ impl CutHandles {
         if response.drag_started()
             && let Some(pointer) = pointer
         {
-            // Where the button went down: egui reports a drag only some points later.
+            // From where the button was pressed: egui reports a drag only some points later.
             let pressed = ui.input(|input| input.pointer.press_origin()).unwrap_or(pointer);
             self.drag = Some(Drag { id, grip: position - pressed, pivot, behind });
         }
@@ -197,13 +197,14 @@ impl CutHandles {
     }
 }
 
-/// Where a handle lies that is to be reached: not beyond the border of the picture.
+/// Clamps the position of a handle to the picture, inset so that it can be grabbed.
 fn within(picture: Rect, position: Pos2) -> Pos2 {
     let room = picture.shrink(theme::HANDLE_INSET);
     if room.is_positive() { room.clamp(position) } else { position }
 }
 
-/// The direction in which a line of sight (its origin relative to the middle) meets a sphere, or passes it.
+/// Intersects a viewing ray with a sphere around the origin and returns the direction of the hit from its centre; for
+/// a ray that misses the sphere, the direction of the nearest point on the ray.
 fn towards_sphere(origin: DVec3, direction: DVec3, radius: f64, behind: bool) -> DVec3 {
     let nearest = origin - direction * origin.dot(direction);
     let half_chord = (radius * radius - nearest.length_squared()).max(0.0).sqrt();
@@ -211,7 +212,7 @@ fn towards_sphere(origin: DVec3, direction: DVec3, radius: f64, behind: bool) ->
     (nearest + direction * (sign * half_chord)).normalize_or(-direction)
 }
 
-/// Size and colour of a handle: under the pointer it grows and brightens.
+/// Returns the half size and the colour of a handle: it grows and brightens under the pointer.
 fn look(response: &Response) -> (f32, Color32) {
     if response.hovered() || response.dragged() {
         (SIDE + 1.5, theme::EYE_CURVE)
@@ -220,14 +221,14 @@ fn look(response: &Response) -> (f32, Color32) {
     }
 }
 
-/// What is drawn along an axis.
+/// Paints a square handle, which is dragged along an axis.
 fn square(painter: &Painter, at: Pos2, response: &Response) {
     let (half, ink) = look(response);
     painter.rect_filled(Rect::from_center_size(at, Vec2::splat(2.0 * half + 3.0)), 2.0, theme::OUTLINE);
     painter.rect_filled(Rect::from_center_size(at, Vec2::splat(2.0 * half)), 1.5, ink);
 }
 
-/// What is turned; hollow where it points away from the eye.
+/// Paints a round handle, which rotates the plane; hollow where it points away from the eye.
 fn knob(painter: &Painter, at: Pos2, response: &Response, hollow: bool) {
     let (radius, ink) = look(response);
     painter.circle_filled(at, radius + 1.5, theme::OUTLINE);

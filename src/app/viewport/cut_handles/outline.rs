@@ -1,17 +1,17 @@
-//! Where the crop box and the clip plane lie in the scene.
+//! Geometry of the crop box and of the clip plane in scene space.
 
 use glam::DVec3;
 
 use crate::math::SceneSpace;
 use crate::model::{ClipPlane, CropBox};
 
-/// The scene point at shares of the grid along its axes.
+/// Converts normalised grid coordinates (0 to 1 along each axis) to a scene point.
 fn place(scene: &SceneSpace, share: DVec3) -> DVec3 {
     let dims = DVec3::from(scene.dims.map(|n| n as f64));
     scene.scene_from_index.transform_point3(share * dims - 0.5)
 }
 
-/// The twelve pairs of neighbouring corners of a box, by the bits of their numbers.
+/// Iterates over the twelve edges of a box as pairs of corner numbers, whose bits are the axes.
 fn corner_pairs() -> impl Iterator<Item = [usize; 2]> {
     (0..8_usize).flat_map(|from| {
         (0..3).filter(move |axis| from >> axis & 1 == 0).map(move |axis| [from, from | 1 << axis])
@@ -22,13 +22,13 @@ fn corner(low: DVec3, high: DVec3, at: usize) -> DVec3 {
     DVec3::from([0, 1, 2].map(|axis| if at >> axis & 1 == 0 { low[axis] } else { high[axis] }))
 }
 
-/// The edges of a crop box, in the scene.
+/// Returns the twelve edges of a crop box, in scene space.
 pub(crate) fn edges(crop: &CropBox, scene: &SceneSpace) -> Vec<[DVec3; 2]> {
     let (low, high) = (crop.low.into(), crop.high.into());
     corner_pairs().map(|pair| pair.map(|at| place(scene, corner(low, high, at)))).collect()
 }
 
-/// The middle of a side of a crop box, and all of the grid along that axis.
+/// Returns the centre of a face of a crop box, and the full extent of the grid along that axis, in scene space.
 pub(crate) fn side(crop: &CropBox, scene: &SceneSpace, axis: usize, is_high: bool) -> (DVec3, DVec3) {
     let (low, high) = (DVec3::from(crop.low), DVec3::from(crop.high));
     let mut share = (low + high) / 2.0;
@@ -37,7 +37,7 @@ pub(crate) fn side(crop: &CropBox, scene: &SceneSpace, axis: usize, is_high: boo
     (place(scene, share), along)
 }
 
-/// What a clip plane cuts out of the grid's box: the corners of a convex polygon, in order; none if it lies
+/// Intersects a clip plane with the grid's box: the corners of a convex polygon, in order; empty if the plane lies
 /// outside.
 pub(crate) fn section(plane: &ClipPlane, scene: &SceneSpace) -> Vec<DVec3> {
     let normal = plane.unit_normal();
@@ -59,7 +59,8 @@ pub(crate) fn section(plane: &ClipPlane, scene: &SceneSpace) -> Vec<DVec3> {
     corners
 }
 
-/// Where the handle of a clip plane is: in the middle of its section, or as near to the volume's as it gets.
+/// Returns the position of the clip plane's handle: the centroid of its section, or without one the point of the
+/// plane nearest to the volume's centre.
 pub(crate) fn middle(section: &[DVec3], plane: &ClipPlane) -> DVec3 {
     if section.is_empty() {
         return plane.unit_normal() * plane.offset;

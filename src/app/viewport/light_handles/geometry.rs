@@ -1,4 +1,4 @@
-//! Where light handles are, and where a light goes when its handle is dragged.
+//! Geometry of light handles: their position in the window, and the light's position after a drag.
 
 use std::f64::consts::TAU;
 
@@ -9,31 +9,33 @@ use super::theme;
 use crate::app::viewport::view_projection::ViewProjection;
 use crate::model::{Camera, LightKind, Projection, SceneLight};
 
-/// The radius of the sphere on which parallel lights are shown, per radius of the volume: a little larger.
+/// Radius of the sphere that carries the handles of parallel lights, relative to the volume's radius.
 const SPHERE_PER_SUPPORT: f64 = 1.15;
-/// The largest radius of that sphere, as a share of the way to the border of the picture: it fits in there.
+/// Largest radius of the handles' sphere, relative to the distance to the nearest border of the picture, so that it
+/// fits.
 const SPHERE_PER_VIEW: f64 = 0.9;
-/// A panned volume must not shrink its sphere to nothing: share of half the picture's shorter side.
+/// Least distance to the border that counts, as a share of half the picture's shorter side, so that panning cannot
+/// shrink the sphere to nothing.
 const LEAST_ROOM: f64 = 0.5;
-/// Distance of a perspective light from the eye per notch of the wheel.
+/// Factor by which one notch of the wheel changes the distance of a perspective light from the eye.
 const SIGHT_PER_NOTCH: f64 = 1.06;
-/// How far beside the line of sight a light behind the eye has a side, as a share of its distance: 1°.
+/// Least offset from the line of sight, relative to the distance, at which a light behind the eye gets a handle: 1°.
 const LEAST_ASIDE: f64 = 0.017;
-/// Corners of a circle's polyline.
+/// Number of segments of a circle's polyline.
 const CIRCLE_POINTS: usize = 96;
 
-/// Where a handle is painted.
+/// Placement of a light's handle in the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Handle {
-    /// In points.
+    /// Position of the handle, in points.
     pub position: Pos2,
-    /// Further from the eye than the middle of the volume.
+    /// True if the light is further from the eye than the centre of the volume.
     pub behind: bool,
-    /// Where the light itself is, if that is not in the picture: from the handle, of length 1.
+    /// Unit vector from the handle towards the light, if the light is outside the picture.
     pub outside: Option<Vec2>,
 }
 
-/// The camera over the picture's rectangle.
+/// Camera over the picture's rectangle, with the sphere for handles of parallel lights.
 #[derive(Debug, Clone)]
 pub(crate) struct View {
     view_projection: ViewProjection,
@@ -41,10 +43,11 @@ pub(crate) struct View {
 }
 
 impl View {
-    /// `picture` in points; `support_radius` of the volume in scene units.
+    /// Creates a view. `picture` is in points; `support_radius` is the volume's, in scene units.
     pub(crate) fn new(camera: Camera, picture: Rect, support_radius: f64) -> Self {
         let (width, height) = (f64::from(picture.width()), f64::from(picture.height()).max(1.0));
-        // From the middle of the volume to the nearest border, as long as it is well in the picture.
+        // Distance from the centre of the volume to the nearest border, limited below while the centre is near the
+        // border.
         let half = width.min(height) / 2.0;
         let room = camera
             .pixel_from_scene(DVec3::ZERO, width, height)
@@ -61,30 +64,30 @@ impl View {
         }
     }
 
-    /// Where a scene point is seen, in points; `None` behind the eye.
+    /// Projects a scene point to the window, in points; `None` behind the eye.
     pub(crate) fn point(&self, scene: DVec3) -> Option<Pos2> {
         self.view_projection.point(scene)
     }
 
-    /// Whether a place of the window is well within the picture.
+    /// Returns true if a window position is inside the picture, inset by the radius of a handle.
     pub(crate) fn shows(&self, at: Pos2) -> bool {
         self.view_projection.picture.shrink(theme::HANDLE_RADIUS).contains(at)
     }
 
-    /// From the eye to a point along the axis of view.
+    /// Returns the depth of a scene point: its distance from the eye along the viewing axis.
     fn depth(&self, scene: DVec3) -> f64 {
         (self.view_projection.camera.eye() - scene).dot(self.view_projection.camera.scene_from_view().z_axis)
     }
 
-    /// The handle of a light: at the border for one that is outside of the picture, or beside the eye or behind it; `None`
-    /// for one right behind the eye, which has no side.
+    /// Returns the handle of a light: clamped to the border for a light outside the picture, beside the eye or behind
+    /// it; `None` for one directly behind the eye, which has no direction in the picture.
     pub(crate) fn handle(&self, light: &SceneLight) -> Option<Handle> {
         let scene = match light.kind {
             LightKind::Parallel => light.direction() * self.radius,
             LightKind::Perspective => DVec3::from(light.position),
         };
         let seen = self.point(scene).or_else(|| self.beside(scene))?;
-        // At the border in the direction in which the light is, as seen from the middle.
+        // Clamped to the border along the line from the picture's centre to the light.
         let picture = self.view_projection.picture;
         let half = (picture.size() / 2.0 - Vec2::splat(theme::LIGHT_INSET)).max(Vec2::splat(1.0));
         let out = seen - picture.center();
@@ -94,12 +97,12 @@ impl View {
         Some(Handle {
             position,
             behind: self.depth(scene) > self.depth(DVec3::ZERO) + 1e-9,
-            // Not where its own place is in the picture, in the margin that handles keep to.
+            // No arrow if the light is in the picture, be it in the margin that handles avoid.
             outside: (!picture.contains(seen)).then(|| away.normalized()),
         })
     }
 
-    /// Beyond the border of the picture, to the side on which a point lies that the eye does not look towards.
+    /// Returns a position outside the picture, in the direction of a point that is not in front of the eye.
     fn beside(&self, scene: DVec3) -> Option<Pos2> {
         let camera = &self.view_projection.camera;
         let view = camera.scene_from_view();
@@ -110,17 +113,18 @@ impl View {
         is_aside.then(|| picture.center() + across.normalized() * picture.size().length())
     }
 
-    /// To the right of the picture, in scene space.
+    /// Unit vector to the right of the picture, in scene space.
     pub(crate) fn right(&self) -> DVec3 {
         self.view_projection.camera.scene_from_view().x_axis
     }
 
-    /// Towards the eye, in scene space.
+    /// Unit vector towards the eye, in scene space.
     pub(crate) fn towards(&self) -> DVec3 {
         self.view_projection.camera.scene_from_view().z_axis
     }
 
-    /// The scene point that is seen at a place of the window, on the plane through `through` that faces the eye.
+    /// Intersects the viewing ray of a window position with the plane through `through` that faces the eye, in scene
+    /// space.
     pub(crate) fn facing(&self, through: DVec3, at: Pos2) -> Option<DVec3> {
         let (origin, direction) = self.view_projection.ray(at);
         let normal = self.view_projection.camera.scene_from_view().z_axis;
@@ -128,7 +132,7 @@ impl View {
         along.is_finite().then(|| origin + direction * along)
     }
 
-    /// Moves a light so that its handle comes to lie at a point of the window.
+    /// Moves a light so that its handle lies at `to` in the window.
     pub(crate) fn move_light(&self, light: &mut SceneLight, to: Pos2, behind: bool) {
         let (origin, direction) = self.view_projection.ray(to);
         let position = DVec3::from(light.position);
@@ -137,15 +141,15 @@ impl View {
                 (self.on_sphere(origin, direction, behind) * position.length().max(1e-3)).into()
             }
             LightKind::Perspective => {
-                // Of a light that the eye does not look towards, the hand has the middle of the picture's depth.
+                // A light that is not in front of the eye is placed at the depth of the scene's centre.
                 let through = if self.point(position).is_some() { position } else { DVec3::ZERO };
                 self.facing(through, to).map_or(light.position, Into::into)
             }
         };
     }
 
-    /// Where a ray meets the sphere, as a direction from its middle. Rays that miss it give the
-    /// point of the silhouette that is nearest to them.
+    /// Intersects a ray with the handles' sphere and returns the direction of the hit from its centre. Rays that miss
+    /// the sphere give the nearest point of the silhouette.
     fn on_sphere(&self, origin: DVec3, direction: DVec3, behind: bool) -> DVec3 {
         let middle = -origin.dot(direction);
         let nearest = origin + direction * middle;
@@ -177,18 +181,18 @@ impl View {
         };
     }
 
-    /// Of the sphere on which handles of parallel lights lie, in scene units.
+    /// Radius of the sphere that carries the handles of parallel lights, in scene units.
     pub(crate) fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// The circle of the sphere that faces the eye.
+    /// Returns the great circle of the sphere that faces the eye, in points.
     pub(crate) fn silhouette(&self) -> Vec<Pos2> {
         let view = self.view_projection.camera.scene_from_view();
         self.circle(view.x_axis, view.y_axis)
     }
 
-    /// The great circle through a direction and the line of sight.
+    /// Returns the great circle through a direction and the viewing axis, in points.
     pub(crate) fn meridian(&self, direction: DVec3) -> Vec<Pos2> {
         let view = self.view_projection.camera.scene_from_view();
         let across = direction.reject_from(view.z_axis).normalize_or(view.x_axis);
@@ -250,7 +254,7 @@ mod tests {
         assert!(before.behind);
         view.move_light(&mut light, before.position + vec2(5.0, 5.0), true);
         assert!(view.handle(&light).unwrap().behind);
-        // Far beyond the silhouette, towards the lower right.
+        // Far beyond the silhouette, to the lower right.
         view.move_light(&mut light, pos2(5000.0, 4000.0), false);
         let handle = view.handle(&light).unwrap();
         assert!(
@@ -301,7 +305,7 @@ mod tests {
         }
     }
 
-    /// In a picture that is narrower than the frame, which the angle of view of its height would cut off.
+    /// Uses a picture narrower than the camera's frame, which the angle of view of its height would cut off.
     #[test]
     fn handles_lie_over_narrow_pictures_of_a_frame() {
         let picture = Rect::from_min_size(pos2(10.0, 20.0), vec2(200.0, 600.0));
@@ -310,13 +314,13 @@ mod tests {
             let view = View::new(camera.clone(), picture, 1.8);
             let silhouette = view.silhouette();
             assert!(!silhouette.is_empty() && silhouette.iter().all(|at| picture.contains(*at)));
-            // The sphere that lights are dragged on reaches well out to both sides.
+            // The sphere that carries the handles extends well to both sides.
             let widest = silhouette.iter().map(|at| (at.x - picture.center().x).abs()).fold(0.0, f32::max);
             assert!(widest > 0.6 * picture.width() / 2.0, "{projection:?}: {widest}");
             for kind in [LightKind::Parallel, LightKind::Perspective] {
                 let mut light = light(kind);
                 let before = view.handle(&light).unwrap();
-                // Where the picture shows what the handle stands for.
+                // Projection of the light's position in the picture.
                 let shown = match kind {
                     LightKind::Parallel => light.direction() * view.radius(),
                     LightKind::Perspective => DVec3::from(light.position),

@@ -1,21 +1,21 @@
-//! A small handle beside that of a light: where the pointer takes hold of it, and where it is dragged to.
+//! Secondary handle of a light: hit test and drag.
 
 use eframe::egui::{self, Id, Pos2, Rect, Role, Sense, Ui, Vec2, WidgetInfo};
 
-/// Points around a handle in which it can be grabbed, too.
+/// Margin around a handle that also grabs it, in points.
 const MARGIN: f32 = 3.0;
 
-/// What the pointer does with a handle.
+/// Pointer interaction with a handle in this frame.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Grip {
-    /// It is on it, or drags it.
+    /// True if the pointer is on the handle or drags it.
     pub is_active: bool,
     pub is_dragged: bool,
-    /// Where it is dragged to now.
+    /// Position that the handle is dragged to in this frame, in points.
     pub moved_to: Option<Pos2>,
 }
 
-/// Lets the pointer take hold of a handle, of half that edge, which readers know by a name.
+/// Interacts with a square handle of the given half edge in points, which screen readers know by `name`.
 pub(super) fn grip(ui: &Ui, at: Pos2, half_edge: f32, id: Id, name: &str) -> Grip {
     let area = Rect::from_center_size(at, Vec2::splat(2.0 * (half_edge + MARGIN)));
     let response = ui.interact(area, id, Sense::drag());

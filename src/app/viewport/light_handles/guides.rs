@@ -1,4 +1,4 @@
-//! Lines that help while a light is moved: where it stands over the floor, its sphere, the cone of its hood.
+//! Guide lines for a light being moved: its height over the floor, the sphere of directions, the cone of a spotlight.
 
 use std::f64::consts::TAU;
 
@@ -9,13 +9,12 @@ use super::geometry::View;
 use crate::app::common::theme;
 use crate::model::{LightKind, SceneLight};
 
-/// Corners of a circle.
+/// Number of segments of a circle.
 const CORNERS: usize = 72;
-/// Lines from a hood's light to the rim of its cone.
+/// Number of lines from a spotlight to the rim of its cone.
 const RIBS: usize = 6;
 
-/// Paints all that help with a light, whose position refers to the scene, over a floor that lies that high in a
-/// direction which points up.
+/// Paints the guide lines of a light in scene space. `up` is the vertical axis, `floor` the floor's height along it.
 pub(crate) fn paint(painter: &Painter, view: &View, light: &SceneLight, up: DVec3, floor: f64) {
     let line = |points: &[DVec3], strength: f32| {
         let seen: Option<Vec<Pos2>> = points.iter().map(|&point| view.point(point)).collect();
@@ -45,13 +44,13 @@ pub(crate) fn paint(painter: &Painter, view: &View, light: &SceneLight, up: DVec
     }
 }
 
-/// Where a place stands over the floor.
+/// Position of a light relative to the floor.
 struct Stand {
-    /// All places as far from the middle.
+    /// Circle of the floor's points at the same distance from the axis.
     ring: Vec<DVec3>,
-    /// Right below it, or above.
+    /// Perpendicular projection of the light onto the floor.
     foot: DVec3,
-    /// Of the ring.
+    /// Centre of the circle.
     middle: DVec3,
 }
 
@@ -68,7 +67,8 @@ impl Stand {
     }
 }
 
-/// The cone of a hood, up to the middle of the volume: its rim, and lines to it. None without a hood.
+/// Returns the polylines of a spotlight's cone, cut at the distance of the volume's centre: the rim, and lines to it.
+/// Empty without a spotlight.
 fn hood(light: &SceneLight) -> Vec<Vec<DVec3>> {
     if light.kind != LightKind::Perspective || !light.hood.on {
         return Vec::new();

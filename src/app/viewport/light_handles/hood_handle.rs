@@ -1,4 +1,4 @@
-//! The handle on the rim of a hood's cone: dragging it opens and closes the hood.
+//! Handle on the rim of a spotlight's cone: dragging it changes the cone's angle.
 
 use std::f64::consts::FRAC_PI_4;
 use std::ops::RangeInclusive;
@@ -12,25 +12,24 @@ use crate::app::common::theme;
 use crate::app::text;
 use crate::model::{Hood, LightKind, SceneLight};
 
-/// Half angles that can be dragged, in degrees, as in the side panel.
+/// Range of half angles that can be dragged, in degrees; the same as in the side panel.
 const HALF_ANGLES_DEG: RangeInclusive<f64> = 1.0..=89.0;
 
-/// Half the edge of the handle, in points.
+/// Half the edge length of the handle, in points.
 const HALF_EDGE: f32 = 5.0;
 
-/// Whether a light has a cone.
+/// Returns true if the light is a spotlight with a visible cone.
 fn has_cone(light: &SceneLight) -> bool {
     light.kind == LightKind::Perspective && light.hood.on
 }
 
-/// How far along the cone the handle may be: shares of the way to where the cone is as deep as the middle of the
-/// volume.
+/// Candidate positions of the handle along the cone, as fractions of the depth of the volume's centre.
 const SHARES: [f64; 4] = [1.0, 0.7, 0.45, 0.25];
 
-/// Where around the cone it may be, in eighths of a turn from the right: sides before corners.
+/// Candidate positions around the cone, in eighths of a turn from the right: sides before corners.
 const EIGHTHS: [u8; 8] = [0, 4, 2, 6, 1, 3, 5, 7];
 
-/// A line on a cone, and a share of it.
+/// Position on a cone: a line from its tip, and a fraction of its length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Spot {
     eighth: u8,
@@ -38,7 +37,7 @@ struct Spot {
 }
 
 impl Spot {
-    /// Across the axis of the cone, towards the line.
+    /// Unit vector perpendicular to the cone's axis, towards the line.
     fn across(self, view: &View, light: &SceneLight) -> DVec3 {
         let axis = light.direction();
         let right = view.right().reject_from(axis).normalize_or(axis.any_orthonormal_vector());
@@ -52,14 +51,15 @@ impl Spot {
         position + (self.across(view, light) * slope - light.direction()) * position.length() * self.share
     }
 
-    /// The first that the picture shows, as far along as possible.
+    /// Returns the first candidate that lies in the picture, as far from the light as possible.
     fn seen(view: &View, light: &SceneLight) -> Option<Self> {
         let spots = SHARES.iter().flat_map(|&share| EIGHTHS.map(|eighth| Self { eighth, share }));
         let is_seen = |spot: &Self| view.point(spot.place(view, light)).is_some_and(|at| view.shows(at));
         spots.into_iter().find(is_seen)
     }
 
-    /// The half angle of a cone from a light through a point; on the other side of its axis, the least.
+    /// Returns the half angle of the cone through a point, in degrees; the smallest one if the point is across the
+    /// axis.
     fn half_angle_deg(self, view: &View, light: &SceneLight, through: DVec3) -> f64 {
         let ray = through - DVec3::from(light.position);
         let is_beyond = ray.dot(self.across(view, light)) < 0.0;
@@ -68,22 +68,22 @@ impl Spot {
     }
 }
 
-/// State of the handle between frames.
+/// State of the spotlight handle between frames.
 #[derive(Debug, Default)]
 pub(crate) struct HoodHandle {
-    /// What is being dragged.
+    /// Position on the cone of the drag in progress.
     dragged: Option<Spot>,
-    /// The pointer is on it, or drags it.
+    /// True if the pointer is on the handle or drags it.
     active: bool,
 }
 
 impl HoodHandle {
-    /// Whether the pointer is on it, or drags it.
+    /// Returns true if the pointer is on the handle or drags it.
     pub(crate) fn is_active(&self) -> bool {
         self.active
     }
 
-    /// Shows the handle of a light, which refers to the scene. Returns the half angle that it is dragged to.
+    /// Shows the handle of a light in scene space. Returns the half angle that it is dragged to, in degrees.
     pub(crate) fn show(
         &mut self,
         ui: &Ui,
@@ -107,7 +107,7 @@ impl HoodHandle {
         let outline = Stroke::new(1.5, theme::OUTLINE);
         painter.rect(square, 1.0, theme::color(light.color), outline, StrokeKind::Outside);
         let half_angle_deg = spot.half_angle_deg(view, light, view.facing(at, grip.moved_to?)?);
-        // Not so far that nobody could grab it any more.
+        // Never so far that the handle could not be grabbed any more.
         let hood = Hood { half_angle_deg, ..light.hood };
         let moved = spot.place(view, &SceneLight { hood, ..*light });
         view.point(moved).is_some_and(|at| view.shows(at)).then_some(half_angle_deg)
@@ -145,7 +145,7 @@ mod tests {
         let beyond = view.facing(at, seen - Vec2::new(500.0, 0.0)).unwrap();
         let closed = spot.half_angle_deg(&view, &light, beyond);
         assert_eq!(closed, 1.0, "closed, and not open to the other side");
-        // Wherever the light is, some spot of its cone can be grabbed.
+        // At any position of the light, some spot of its cone can be grabbed.
         for position in [[0.0, 0.0, 6.0], [4.0, 3.0, 2.0], [-5.0, 0.1, 0.0], [0.0, 3.0, -1.0]] {
             let light = SceneLight { position, ..light };
             let spot = Spot::seen(&view, &light).expect("a spot");

@@ -1,8 +1,8 @@
-//! Handles in the picture by which lights are dragged.
+//! Light handles: discs in the picture by which lights are dragged.
 //!
-//! A parallel light's handle lies on a sphere around the volume and is turned like a trackball; a
-//! perspective light's handle lies where the light is and moves in the plane that faces the eye.
-//! Handles are painted by the window over the picture and are therefore never in an export.
+//! The handle of a parallel light lies on a sphere around the volume and turns like a trackball; the handle of a
+//! perspective light lies at the light's position and moves in the plane that faces the eye. The window paints
+//! handles over the picture, so they never appear in an export.
 
 mod geometry;
 mod grip;
@@ -20,39 +20,39 @@ use crate::app::common::theme;
 use crate::app::text;
 use crate::model::{LightKind, Settings};
 
-/// A drag that is under way.
+/// Drag in progress of a light's handle.
 #[derive(Debug, Clone, Copy)]
 struct Drag {
     light: usize,
-    /// The handle was on the far side of its sphere.
+    /// True if the handle was on the far side of its sphere.
     behind: bool,
-    /// From the pointer to the handle.
+    /// Offset from the pointer to the handle, in points.
     grip: Vec2,
 }
 
-/// State of the handles between frames.
+/// State of the light handles between frames.
 #[derive(Debug, Default)]
 pub(crate) struct LightHandles {
-    /// The user does not want them.
+    /// True if the user has switched the handles off.
     pub hidden: bool,
     drag: Option<Drag>,
-    /// The handle of the hood of the selected light.
+    /// Spotlight handle of the selected light.
     hood: HoodHandle,
-    /// The handle on its border, if it has a size.
+    /// Size handle of the selected light, if it is an area light.
     size: SizeHandle,
-    /// The pointer is on a handle for which the wheel means distance.
+    /// True if the pointer is on a handle for which the wheel changes the distance.
     pub takes_wheel: bool,
-    /// Where they were painted last, in points.
+    /// Positions of the handles in the last frame, in points.
     positions: Vec<Pos2>,
 }
 
 impl LightHandles {
-    /// Where the handles are, in points; empty while hidden.
+    /// Positions of the handles, in points; empty while hidden.
     pub(crate) fn positions(&self) -> &[Pos2] {
         &self.positions
     }
 
-    /// Shows none.
+    /// Clears the state that belongs to one frame.
     pub(crate) fn leave(&mut self) {
         self.positions.clear();
         self.takes_wheel = false;
@@ -117,7 +117,7 @@ impl LightHandles {
             }
             paint_handle(&painter, handle.position, radius, color, handle.behind);
             if let Some(direction) = handle.outside {
-                // Beyond the ring of the selected light.
+                // Outside the ring of the selected light.
                 let from = radius + if *selected == light { 4.5 } else { 0.0 };
                 paint_arrow(&painter, handle.position + direction * from, direction, color);
             }
@@ -145,7 +145,7 @@ impl LightHandles {
         if response.drag_started()
             && let Some(pointer) = pointer
         {
-            // Where the button went down: egui reports a drag only some points later.
+            // From where the button was pressed: egui reports a drag only some points later.
             let pressed = ui.input(|input| input.pointer.press_origin()).unwrap_or(pointer);
             self.drag = Some(Drag { light, behind: handle.behind, grip: handle.position - pressed });
         }
@@ -174,22 +174,22 @@ impl LightHandles {
     }
 }
 
-/// A disc in the light's colour, or a ring for a light on the far side.
+/// Paints a disc in the light's colour, or a ring for a light on the far side.
 fn paint_handle(painter: &egui::Painter, at: Pos2, radius: f32, color: Color32, hollow: bool) {
     painter.circle_filled(at, radius + 1.5, theme::OUTLINE);
     if hollow {
         painter.circle_stroke(at, radius - 1.0, Stroke::new(2.5, color));
     } else {
         painter.circle_filled(at, radius, color);
-        // A darker middle tells white lights from white material.
+        // A darker circle inside distinguishes white lights from white material.
         painter.circle_stroke(at, radius - 3.0, Stroke::new(1.0, theme::OUTLINE.gamma_multiply(0.6)));
     }
 }
 
-/// Points of an arrow's length, and half of its width.
+/// Length and half width of an arrow, in points.
 const ARROW: Vec2 = Vec2::new(6.0, 5.0);
 
-/// An arrow from the border of a handle to where its light is.
+/// Paints an arrow at the border of a handle that points towards its light outside the picture.
 fn paint_arrow(painter: &egui::Painter, from: Pos2, direction: Vec2, color: Color32) {
     let (foot, side) = (from + direction * 1.5, direction.rot90() * ARROW.y);
     let corners = vec![foot + side, foot + direction * ARROW.x, foot - side];

@@ -1,4 +1,4 @@
-//! What shines of a light that has a size: its outline, and the handle on its border by which it is made larger.
+//! Outline of an area light in the picture, and the handle on it that changes the light's size.
 
 use std::f64::consts::TAU;
 
@@ -14,29 +14,29 @@ use crate::model::{LightArea, LightKind, LightShape, MAX_LIGHT_ANGLE_DEG, MAX_LI
 /// Radius of the handle, in points.
 const RADIUS: f32 = 5.0;
 
-/// Corners of a round outline.
+/// Number of segments of a round outline.
 const CORNERS: usize = 72;
 
-/// The narrowest that can be dragged, in scene units and in degrees: what has no size has no border to drag.
+/// Smallest sizes that can be dragged, in scene units and in degrees: an outline without extent could not be grabbed.
 const LEAST_SIZE: f64 = 0.02;
 const LEAST_ANGLE_DEG: f64 = 0.5;
 
-/// A size that was dragged to.
+/// New size of a light that is being dragged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Dragged {
     /// Width of a perspective light, in scene units.
     Size(f64),
-    /// Width of a parallel light, in degrees.
+    /// Angular diameter of a parallel light, in degrees.
     AngleDeg(f64),
 }
 
-/// A light that has a size, where the picture shows it.
+/// Placement of an area light in scene space, as displayed.
 #[derive(Debug, Clone, Copy)]
 struct Shown {
     area: LightArea,
     kind: LightKind,
     middle: DVec3,
-    /// Scene units per unit of its extent: a parallel light is shown as far away as its handle.
+    /// Scene units per unit of the light's extent: a parallel light is displayed at the distance of its handle.
     scale: f64,
 }
 
@@ -49,7 +49,7 @@ impl Shown {
         light.area.map(|area| Self { area, kind: light.kind, middle, scale })
     }
 
-    /// Its border: round, or with four corners. A ball is a circle from everywhere.
+    /// Returns the outline in scene space: a circle, or four corners. A ball is a circle from every direction.
     fn outline(&self, view: &View) -> Vec<DVec3> {
         let LightArea { shape, right, up, near: _ } = self.area;
         let at = |x: DVec3, y: DVec3| self.middle + (x + y) * self.scale;
@@ -72,7 +72,7 @@ impl Shown {
         }
     }
 
-    /// From its middle to the middle of the border on one side of it, in scene units.
+    /// Returns the vector from the centre to the middle of one side of the outline, in scene units.
     fn side(&self, view: &View, side: Side) -> DVec3 {
         let LightArea { shape, right, up, near: _ } = self.area;
         let radius = right.length();
@@ -89,7 +89,8 @@ impl Shown {
         out * self.scale
     }
 
-    /// The side on which its border is seen furthest from its middle: others may lie behind the handle of the light.
+    /// Returns the side of the outline that is furthest from the centre in the picture: others may be hidden by the
+    /// light's handle.
     fn clearest(&self, view: &View) -> Option<Side> {
         let middle = view.point(self.middle)?;
         let away = |side: Side| {
@@ -100,7 +101,7 @@ impl Shown {
         seen.max_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(side, _)| side)
     }
 
-    /// How wide it is if its border on a side goes through a point; beyond its middle it is as narrow as can be grabbed.
+    /// Returns the size at which the outline passes through a point; the smallest one for points across the centre.
     fn through(&self, out: DVec3, point: DVec3) -> Dragged {
         let grown = ((point - self.middle).dot(out) / out.length_squared()).max(0.0);
         let half = self.area.right.length() * grown;
@@ -114,7 +115,7 @@ impl Shown {
     }
 }
 
-/// Where on the border the handle is.
+/// Side of the outline on which the handle lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Side {
     Right,
@@ -127,22 +128,22 @@ impl Side {
     const ALL: [Self; 4] = [Self::Right, Self::Up, Self::Left, Self::Down];
 }
 
-/// State of the handle between frames.
+/// State of the size handle between frames.
 #[derive(Debug, Default)]
 pub(crate) struct SizeHandle {
-    /// The side of the light on which it is being dragged.
+    /// Side of the outline of the drag in progress.
     dragged: Option<Side>,
-    /// The pointer is on it, or drags it.
+    /// True if the pointer is on the handle or drags it.
     active: bool,
 }
 
 impl SizeHandle {
-    /// Whether the pointer is on it, or drags it.
+    /// Returns true if the pointer is on the handle or drags it.
     pub(crate) fn is_active(&self) -> bool {
         self.active
     }
 
-    /// Shows a light's outline and its handle. Returns the size that it is dragged to.
+    /// Shows a light's outline and its size handle. Returns the size that it is dragged to.
     pub(crate) fn show(
         &mut self,
         ui: &Ui,
@@ -221,7 +222,7 @@ mod tests {
                     view.point(shown.middle + shown.side(&view, side)).expect("seen").distance(middle)
                 };
                 assert!(Side::ALL.into_iter().all(|side| away(side) <= away(clearest)));
-                // Its border is part of the outline, or at the middle of a side of it.
+                // The side's middle is a point of the outline, or nearer to the centre than its corners.
                 let outline = shown.outline(&view);
                 let reach = |point: &DVec3| (*point - shown.middle).length();
                 let farthest = outline.iter().map(reach).fold(0.0, f64::max);

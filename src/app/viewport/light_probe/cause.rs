@@ -1,33 +1,33 @@
-//! Why a place is dark or bright, in one sentence, and what can be done about it.
+//! Explanation in one sentence of the brightness of a probed point, and remedies for it.
 
 use crate::app::text;
 use crate::app::text::common::LengthUnit;
 use crate::model::{Light, Settings, Sides};
 use crate::plan::{Arrival, Probe};
 
-/// From this share of all light on nobody asks why it is dark.
+/// Share of the possible light from which a point counts as lit.
 const BRIGHT: f64 = 0.5;
 
-/// What decides how bright a place is.
+/// Main reason for the brightness of a probed point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Cause {
-    /// Most of the light gets there.
+    /// Most of the light arrives: index of the strongest light, and its transmittance.
     Lit { light: usize, share: f64 },
-    /// No light is on.
+    /// No light is switched on.
     AllOff,
-    /// No light is on but the sky, of which that share is seen.
+    /// Only the sky is on, of which the fraction `open` is visible from the point.
     Sky { open: f64 },
     /// A light is on the other side of the surface.
     FacesAway { light: usize },
-    /// It lies outside a light's cone.
+    /// The point lies outside a light's cone.
     OutsideCone { light: usize },
-    /// Material takes the light before it gets there, at that distance in scene units.
+    /// Material absorbs the light on its way to the point; `distance` is that of the occluder, in scene units.
     Absorbed { light: usize, share: f64, distance: Option<f64> },
-    /// A light falls on the surface at a low angle.
+    /// A light arrives at a grazing angle to the surface.
     Grazing { light: usize, angle_deg: f64 },
 }
 
-/// How much of a light arrives, and how much would if nothing were in its way.
+/// Returns the intensity of a light that arrives, and the one that would without occlusion.
 fn shares(light: &Light, arrival: &Arrival) -> [f64; 2] {
     let facing = arrival.facing.map_or(1.0, |facing| facing.max(0.0));
     let could = if light.on { light.intensity } else { 0.0 };
@@ -35,7 +35,7 @@ fn shares(light: &Light, arrival: &Arrival) -> [f64; 2] {
 }
 
 impl Cause {
-    /// What decides at a place.
+    /// Finds the main reason for the brightness of a probed point.
     pub(super) fn of(settings: &Settings, found: &Probe) -> Self {
         let all: Vec<_> = settings.lights.iter().zip(&found.lights).collect();
         let parts: Vec<[f64; 2]> = all.iter().map(|(light, arrival)| shares(light, arrival)).collect();
@@ -52,7 +52,7 @@ impl Cause {
             let Arrival { transmittance, hood, .. } = *all[light].1;
             return Self::Lit { light, share: transmittance * hood };
         }
-        // The light that is missed most.
+        // The light with the largest loss.
         let light = most(&|[arrives, could]| could - arrives);
         let Arrival { transmittance, hood, facing, blocked } = *all[light].1;
         match facing {
@@ -67,7 +67,7 @@ impl Cause {
         }
     }
 
-    /// The sentence. `mm_per_unit`: millimetres of a scene unit.
+    /// Describes the cause in one sentence. `mm_per_unit`: millimetres per scene unit.
     pub(super) fn words(self, settings: &Settings, mm_per_unit: f64, unit: LengthUnit) -> String {
         let name = |light: usize| {
             let name = settings.lights.get(light).map_or("", |light| light.name.as_str());
@@ -87,7 +87,7 @@ impl Cause {
         }
     }
 
-    /// What helps, the gentlest first: nothing that would change nothing.
+    /// Returns the applicable remedies, the mildest first; remedies that would change nothing are left out.
     pub(super) fn cures(self, settings: &Settings) -> Vec<Cure> {
         let cures = match self {
             Self::Lit { .. } => Vec::new(),
@@ -101,7 +101,7 @@ impl Cause {
             }
         };
         let helps = |cure: &Cure| {
-            // Where there is a sky, it takes the place of the light from everywhere.
+            // A sky replaces the ambient light.
             let is_idle = *cure == Cure::MoreAmbient && settings.sky.is_on();
             let mut after = settings.clone();
             cure.apply(&mut after);
@@ -111,33 +111,33 @@ impl Cause {
     }
 }
 
-/// Something that makes a place brighter.
+/// Remedy that makes a probed point brighter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Cure {
-    /// Light meets half of the extinction.
+    /// Halves the extinction for light.
     LetThrough,
-    /// An ambient offset (P §4).
+    /// Adds an ambient offset to shadows (P §4).
     LiftShadows,
-    /// More light from everywhere.
+    /// Adds ambient light, which has no direction.
     MoreAmbient,
-    /// A light casts no shadows.
+    /// Switches off the shadows of a light.
     NoShadowOf(usize),
-    /// A weak light from where the eye is.
+    /// Adds a weak light at the eye.
     Headlight,
-    /// Both sides of surfaces are lit.
+    /// Lights both sides of surfaces.
     BothSides,
-    /// A light goes half of the way to the eye.
+    /// Turns a light halfway towards the eye.
     TurnHere(usize),
-    /// A cone becomes wider.
+    /// Widens the cone of a spotlight.
     WidenCone(usize),
-    /// A light shines everywhere.
+    /// Removes the cone of a spotlight.
     NoCone(usize),
-    /// A light is switched on.
+    /// Switches a light on.
     SwitchOn(usize),
 }
 
 impl Cure {
-    /// What its button says, and its tip.
+    /// Name of the remedy's button, and its tooltip.
     pub(super) fn named(self) -> text::Named {
         match self {
             Self::LetThrough => text::probe::LET_THROUGH,
@@ -153,7 +153,7 @@ impl Cure {
         }
     }
 
-    /// Does it.
+    /// Applies the remedy to the settings.
     pub(super) fn apply(self, settings: &mut Settings) {
         let Settings { lights, shadows, shading, lighting, camera, .. } = settings;
         match self {
@@ -232,7 +232,7 @@ mod tests {
         let under_sky = Probe { sky: Some(0.8), ..found(vec![LIT]) };
         let cause = Cause::of(&settings, &under_sky);
         assert_eq!(cause, Cause::Sky { open: 0.8 });
-        // What would change nothing is not offered.
+        // Remedies that would change nothing are not offered.
         assert_eq!(cause.cures(&settings), [Cure::SwitchOn(0), Cure::Headlight]);
         settings.lights.clear();
         assert_eq!(cause.cures(&settings), [Cure::Headlight]);

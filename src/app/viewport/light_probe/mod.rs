@@ -1,4 +1,5 @@
-//! "Why is this dark?": what is under the pointer, and what of every light gets there; and how far two places are apart.
+//! Light probe ("Why is this dark?"): the material under the pointer, the share of every light that arrives there,
+//! and the distance between two points.
 
 mod cause;
 mod tag;
@@ -17,38 +18,38 @@ use crate::data::{DataKind, Volume};
 use crate::model::{Camera, Light, LightKind, Settings};
 use crate::plan::{Arrival, Probe, probe};
 
-/// A place that was clicked.
+/// Point of the volume that was clicked.
 #[derive(Debug, Clone, Copy)]
 struct Pin {
-    /// In scene space.
+    /// Position in scene space.
     point: DVec3,
 }
 
-/// State of the probe between frames.
+/// State of the light probe between frames.
 #[derive(Debug, Default)]
 pub(crate) struct LightProbe {
-    /// Whether it is shown.
+    /// True if the probe is active.
     pub on: bool,
-    /// The last answer, and the question.
+    /// Last result, with the window position and the settings that it belongs to.
     last: Option<(Pos2, Settings, Option<Probe>)>,
-    /// The volume that all this is of.
+    /// Content id of the volume that the state belongs to.
     of: Option<u64>,
-    /// Places that were clicked, the latest last: at most two.
+    /// Clicked points, the latest last: at most two.
     pins: Vec<Pin>,
 }
 
-/// What the probe asks, and how the user has answered.
+/// Pointer input of the probe in this frame.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pointing {
-    /// Where the pointer is, if nothing is dragged.
+    /// Position of the pointer in points, if nothing is being dragged.
     pub pointer: Option<Pos2>,
-    /// The picture was clicked.
+    /// True if the picture was clicked.
     pub clicked: bool,
 }
 
 impl LightProbe {
-    /// Asks what is under the pointer, or at the place that was clicked, and shows the answer; does what helps, if the user
-    /// wants that.
+    /// Probes the point under the pointer, or the clicked one, and shows the result; applies a remedy if the user
+    /// clicks it.
     pub(crate) fn show(
         &mut self,
         ui: &Ui,
@@ -75,7 +76,7 @@ impl LightProbe {
                     }
                     self.pins.push(Pin { point: found.point });
                 }
-                // Beside the object the place is let go.
+                // A click beside the object removes the pins.
                 None => self.pins.clear(),
             }
         }
@@ -128,19 +129,19 @@ impl LightProbe {
         }
     }
 
-    /// The value under the pointer, for other views to mark.
+    /// Returns the value under the pointer, for other views to mark.
     pub(crate) fn value(&self) -> Option<f64> {
         let (_, _, found) = self.last.as_ref().filter(|_| self.on)?;
         Some(found.as_ref()?.value)
     }
 }
 
-/// The unit of lengths in a volume.
+/// Returns the unit of lengths in a volume.
 fn unit_of(volume: &Volume) -> LengthUnit {
     LengthUnit::of(volume.length_unit())
 }
 
-/// A line between two places, and how long it is.
+/// Paints a line between two points, with its length.
 fn measure(painter: &egui::Painter, picture: Rect, camera: &Camera, ends: [DVec3; 2], length: &str) {
     let [Some(from), Some(to)] = ends.map(|end| place(camera, picture, end)) else { return };
     for (width, ink) in [(4.0, theme::OUTLINE), (1.5, theme::EYE_CURVE)] {
@@ -155,7 +156,7 @@ fn measure(painter: &egui::Painter, picture: Rect, camera: &Camera, ends: [DVec3
     painter.galley(ground.min + vec2(5.0, 2.0), galley, theme::EYE_CURVE);
 }
 
-/// What is seen at a point of the window.
+/// Probes the volume along the viewing ray through a point of the window.
 pub(crate) fn seen_at(volume: &Volume, settings: &Settings, picture: Rect, at: Pos2) -> Option<Probe> {
     let offset = at - picture.min;
     let (origin, direction) = settings.camera.ray_through(
@@ -167,16 +168,16 @@ pub(crate) fn seen_at(volume: &Volume, settings: &Settings, picture: Rect, at: P
     probe(volume, settings, origin, direction)
 }
 
-/// The label that is seen, by its number and its name; `None` where values are no labels.
+/// Returns the visible label as number and name; `None` if the values are not labels.
 fn label(settings: &Settings, volume: &Volume, found: &Probe) -> Option<String> {
     let is_by_curve = settings.labels.is_empty();
-    // Of other data they would be counted first, for seconds.
+    // Other data would be counted first, which takes seconds.
     if is_by_curve && !matches!(volume.kind().kind, DataKind::LabelMap { .. }) {
         return None;
     }
     volume.labels()?;
     let number = if is_by_curve {
-        // A curve mixes numbers: what is there is what the nearest voxel holds.
+        // A transfer function interpolates label numbers, so the nearest voxel decides.
         let last = volume.dims().map(|n| n - 1);
         let [x, y, z] = [0, 1, 2].map(|axis| (found.index[axis].round().max(0.0) as usize).min(last[axis]));
         volume.value(x, y, z)
@@ -188,7 +189,7 @@ fn label(settings: &Settings, volume: &Volume, found: &Probe) -> Option<String> 
     Some(text::probe::label(number, named.or(in_file).unwrap_or_default()))
 }
 
-/// The answer in words and numbers.
+/// Formats the probe's result: the value, its position, and a line per light.
 fn answer(settings: &Settings, volume: &Volume, found: &Probe) -> String {
     let unit = unit_of(volume);
     let place =
@@ -209,7 +210,7 @@ fn answer(settings: &Settings, volume: &Volume, found: &Probe) -> String {
     words
 }
 
-/// Why a light lights a point, or does not.
+/// Explains the contribution of one light at the probed point.
 fn reason(light: &Light, arrival: &Arrival) -> String {
     let Arrival { transmittance, hood, facing, blocked: _ } = *arrival;
     if !light.on {
@@ -233,7 +234,7 @@ fn reason(light: &Light, arrival: &Arrival) -> String {
     text::probe::arrival(&through, angle_deg)
 }
 
-/// Where a light is, as seen from a point.
+/// Unit vector from a point towards a light, in scene space.
 fn towards(light: &Light, camera: &Camera, point: DVec3) -> DVec3 {
     let world = light.in_scene(camera);
     match light.kind {
@@ -242,7 +243,7 @@ fn towards(light: &Light, camera: &Camera, point: DVec3) -> DVec3 {
     }
 }
 
-/// Lines from the point to the lights: as strong as what arrives.
+/// Paints lines from the probed point to the lights, with an opacity that follows the share that arrives.
 fn rays(painter: &egui::Painter, picture: Rect, settings: &Settings, found: &Probe) {
     let camera = &settings.camera;
     let Some(from) = place(camera, picture, found.point) else { return };
@@ -253,7 +254,7 @@ fn rays(painter: &egui::Painter, picture: Rect, settings: &Settings, found: &Pro
             LightKind::Perspective => DVec3::from(world.position),
         };
         let Some(to) = place(camera, picture, to) else { continue };
-        // Where the light is lost.
+        // Section of the ray in which the light is absorbed.
         if let Some([near, far]) = arrival.blocked {
             let towards = towards(light, camera, found.point);
             let [Some(near), Some(far)] =
@@ -305,7 +306,7 @@ mod tests {
         let named =
             |number, name: &str| (number, LabelLook { name: name.to_owned(), ..LabelLook::of(number) });
         settings.labels = [named(3, "Liver"), named(9, "")].into_iter().collect();
-        // From the side of the low numbers, and from the other.
+        // Probed from the side of the low numbers, and from the opposite one.
         let said = |settings: &Settings, from: f64| {
             let found =
                 probe(&volume, settings, DVec3::X * from, DVec3::X * -from.signum()).expect("a label");

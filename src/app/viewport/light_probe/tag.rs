@@ -1,5 +1,4 @@
-//! The tag beside the pointer, or beside the place that was clicked: the cause in one sentence, what is known, and what
-//! helps.
+//! Tag of the light probe beside the pointer or the clicked point: the cause in one sentence, details, and remedies.
 
 use eframe::egui::{self, Id, Order, Pos2, Rect, RichText, Ui, Vec2, vec2};
 
@@ -7,34 +6,34 @@ use super::cause::{Cause, Cure};
 use crate::app::common::frame::PROBE_TAG;
 use crate::app::text;
 
-/// Points from the place to the tag.
+/// Distance from the probed point to the tag, in points.
 const ASIDE: f32 = 18.0;
-/// Points of the widest tag.
+/// Maximum width of the tag, in points.
 const WIDEST: f32 = 320.0;
 
-/// What a tag says.
+/// Contents of the light probe's tag.
 pub(super) struct Tag {
-    /// What is there, by its name: of label maps, the label.
+    /// Name of the probed material: in label maps, the label.
     pub subject: Option<String>,
     pub cause: Option<Cause>,
-    /// What helps.
+    /// Remedies that are offered as buttons.
     pub cures: Vec<Cure>,
-    /// The cause in words.
+    /// Cause of the brightness, in one sentence.
     pub sentence: String,
-    /// What is known, a line each.
+    /// Details of the probed point, one per line.
     pub facts: String,
-    /// How far it is from the place that was clicked before.
+    /// Distance from the previously clicked point, with its unit.
     pub distance: Option<String>,
-    /// Where light is lost, as seen from the place: the tag lies on the other side.
+    /// Offset from the probed point to the occluder, in points: the tag lies on the other side.
     pub lost: Option<Vec2>,
-    /// The place was clicked: there is time for buttons.
+    /// True if the point was clicked, so that the tag stays and can have buttons.
     pub is_pinned: bool,
 }
 
-/// Shows the tag beside a place of the picture; what the user wants to be done.
+/// Shows the tag beside a position of the picture; returns the remedy that the user clicked.
 pub(super) fn show(ui: &Ui, picture: Rect, at: Pos2, tag: &Tag) -> Option<Cure> {
     let mut chosen = None;
-    // Away from what it speaks of, or on the side where there is more room.
+    // Away from the occluder, or on the side with more space.
     let is_right = tag.lost.map_or(at.x < picture.center().x, |lost| lost.x < 0.0);
     let is_below = tag.lost.map_or(at.y < picture.center().y, |lost| lost.y < 0.0);
     let pivot = match (is_right, is_below) {
@@ -67,7 +66,7 @@ pub(super) fn show(ui: &Ui, picture: Rect, at: Pos2, tag: &Tag) -> Option<Cure> 
                 ui.label(distance);
             }
             if !tag.is_pinned {
-                // Where nothing is seen, nothing is dark.
+                // No hint to click where nothing is visible.
                 if tag.cause.is_some() {
                     ui.weak(text::probe::CLICK);
                 }

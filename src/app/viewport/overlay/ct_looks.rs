@@ -1,4 +1,5 @@
-//! What is mostly looked for in a CT, one click each, over the foot of its picture; for each volume until it is closed.
+//! Row of CT presets at the bottom of the picture, one click each; shown for every CT volume until the user closes
+//! it.
 
 use std::path::PathBuf;
 
@@ -11,15 +12,16 @@ use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text;
 use crate::model::{PRESETS, Settings};
 
-/// Points of its row, and from its foot to that of the picture, where letters of orientation stand.
+/// Height of the row, and distance from its bottom to the bottom of the picture, which leaves space for the
+/// orientation letters; both in points.
 const HEIGHT: f32 = 30.0;
 const FOOT: f32 = 34.0;
 
-/// Points beside the words, and between them.
+/// Padding beside the row's contents, and gap between its items, both in points.
 const MARGIN: f32 = 10.0;
 const GAP: f32 = 4.0;
 
-/// What it was closed for.
+/// State of the row of CT presets between frames.
 #[derive(Debug, Default)]
 pub(crate) struct CtLooks {
     closed_for: Option<PathBuf>,
@@ -27,7 +29,7 @@ pub(crate) struct CtLooks {
 }
 
 impl CtLooks {
-    /// Shows it over pictures of a CT that are large enough.
+    /// Shows the row over pictures of a CT that are large enough.
     pub(crate) fn show(
         &mut self,
         ui: &mut Ui,
@@ -49,7 +51,7 @@ impl CtLooks {
             let laid = ui.painter().layout_no_wrap(words.to_owned(), font.clone(), theme::EYE_CURVE);
             laid.size().x + GAP
         };
-        // Buttons have a margin around their words.
+        // Buttons have padding around their titles.
         let titles: f32 = presets.iter().map(|preset| width_of(preset.title) + 2.0 * padding).sum();
         let width = width_of(text::picture::CT_LOOKS) + titles + width_of(text::picture::CLOSE_CT_LOOKS_SIGN);
         let size = vec2(width - GAP + 2.0 * MARGIN, HEIGHT);
@@ -65,7 +67,7 @@ impl CtLooks {
         ui.spacing_mut().item_spacing.x = GAP;
         ui.label(RichText::new(text::picture::CT_LOOKS).color(theme::EYE_CURVE));
         for preset in presets {
-            // The one in use is filled.
+            // The preset in use is filled.
             let is_used = self.in_use.has(&preset);
             let (ink, fill) =
                 if is_used { (theme::OUTLINE, theme::ACCENT) } else { (theme::ACCENT, Color32::TRANSPARENT) };
@@ -73,7 +75,7 @@ impl CtLooks {
             let button = ui.add(egui::Button::new(title).fill(fill).stroke(Stroke::NONE).corner_radius(5.0));
             button
                 .widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_used, preset.title));
-            // What it is for is read from its text: only for who asks.
+            // The description is parsed from the preset's text, hence only when the tooltip opens.
             let button = button.on_hover_ui(|ui| {
                 ui.label(preset.about());
             });

@@ -1,4 +1,4 @@
-//! What an export would write over its picture, over the window's picture, which has the shape of the exported one meanwhile.
+//! Preview of an export's marks over the window's picture, which has the exported aspect ratio meanwhile.
 
 use eframe::egui::{Color32, ColorImage, Rect, TextureHandle, TextureOptions, Ui, pos2};
 
@@ -6,10 +6,10 @@ use crate::data::Volume;
 use crate::export::{Rows, marks_of_size};
 use crate::model::{ImageSpec, Settings};
 
-/// Pixels of the longer edge of what is drawn: as many as wide screens have.
+/// Longest edge of the marks' texture, in pixels: the width of a wide screen.
 const LONGEST_EDGE: f32 = 2048.0;
 
-/// What marks were drawn of.
+/// Cache key of the drawn marks: everything that they depend on.
 #[derive(Debug, Clone, PartialEq)]
 struct Drawn {
     shot: ImageSpec,
@@ -18,14 +18,14 @@ struct Drawn {
     volume: u64,
 }
 
-/// Marks as they were drawn last.
+/// Preview of an export's marks, with the texture that was drawn last.
 #[derive(Default)]
 pub(crate) struct ExportMarks {
     drawn: Option<(Drawn, TextureHandle)>,
 }
 
 impl ExportMarks {
-    /// Shows the marks of a picture that would be exported over the window's picture, which has its shape.
+    /// Shows the marks of an exported picture over the window's picture, which has the same aspect ratio.
     pub(in crate::app) fn show(
         &mut self,
         ui: &Ui,
@@ -60,7 +60,7 @@ impl ExportMarks {
     }
 }
 
-/// Draws the marks alone.
+/// Draws the marks on a transparent image.
 fn draw(wanted: &Drawn, volume: &Volume) -> ColorImage {
     let Drawn { shot, size, settings, volume: _ } = wanted;
     let [width, height] = size.map(|edge| edge as usize);

@@ -1,5 +1,5 @@
-//! Overlay over the picture: the volume's box, a scale bar, and a cube that says from where one looks. They are
-//! painted by the window and are therefore never in an export; while one is asked for, its own marks take their place.
+//! Overlay over the picture: the volume's box, a scale bar, and an orientation cube. The window paints it, so it
+//! never appears in an export; while an export is being prepared, the marks of the export replace it.
 
 pub(in crate::app) mod ct_looks;
 pub(in crate::app) mod export_marks;
@@ -19,13 +19,13 @@ use crate::export::{SIDES, scale_bar as bar_for, sides};
 use crate::math::SceneSpace;
 use crate::model::{Camera, StandardView};
 
-/// Edge of the cube in points, before it is turned.
+/// Edge length of the unrotated cube, in points.
 const CUBE: f32 = 44.0;
 
-/// Whether the overlay is shown.
+/// Visibility of the overlay.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Overlay {
-    /// All of it is shown, or nothing.
+    /// True if the overlay is shown, false to hide all of it.
     pub on: bool,
 }
 
@@ -36,8 +36,8 @@ impl Default for Overlay {
 }
 
 impl Overlay {
-    /// Paints scale bar, cube, and in a part of the picture which side of a body is where, if it is one. The side of the
-    /// cube that was clicked, if one was.
+    /// Paints the scale bar and the orientation cube, and for anatomical data the orientation letters into `body`, a
+    /// part of the picture. Returns the view of the cube's face that was clicked, if any.
     pub(crate) fn show(
         self,
         ui: &Ui,
@@ -57,7 +57,7 @@ impl Overlay {
         cube(ui, &painter, picture, camera, body.is_some())
     }
 
-    /// The box of the grid, while something is dragged or the pointer asks for it.
+    /// Paints the grid's bounding box while something is being dragged or the pointer requests it.
     pub(crate) fn outline(self, ui: &Ui, picture: Rect, camera: &Camera, scene: &SceneSpace, strength: f32) {
         if !self.on || strength <= 0.0 {
             return;
@@ -84,7 +84,7 @@ impl Overlay {
     }
 }
 
-/// A bar at the bottom left whose length holds at the middle of the view.
+/// Paints a scale bar at the bottom left; its length is exact at the depth of the view's target.
 fn scale_bar(
     painter: &Painter,
     picture: Rect,
@@ -108,7 +108,7 @@ fn scale_bar(
     outlined(painter, middle, Align2::CENTER_BOTTOM, &bar.words);
 }
 
-/// The cube at the top right: its sides can be clicked.
+/// Paints the orientation cube at the top right; its faces can be clicked.
 fn cube(
     ui: &Ui,
     painter: &Painter,
@@ -135,7 +135,7 @@ fn cube(
         let area = Rect::from_points(&corners);
         let hovered = pointer.is_some_and(|pointer| contains(&corners, pointer));
         let view = StandardView::facing(normal, camera.up);
-        // The side that is under the pointer takes the clicks of its whole box.
+        // The face under the pointer receives the clicks of its bounding box.
         if hovered {
             let response = ui.interact(area, ui.scope_id().with(("cube", name)), Sense::click());
             response.widget_info(|| WidgetInfo::labeled(Role::Button, true, view.name(camera.up)));
@@ -168,7 +168,7 @@ fn cube(
     clicked
 }
 
-/// An opaque colour: one over another.
+/// Composites a translucent colour over an opaque one.
 fn over(below: Color32, ink: Color32) -> Color32 {
     let blend = |a: u8, b: u8| (f32::from(a) * (1.0 - f32::from(ink.a()) / 255.0)).round() as u8 + b;
     let [r, g, b, _] = below.to_array();
@@ -179,7 +179,7 @@ fn over(below: Color32, ink: Color32) -> Color32 {
     )
 }
 
-/// Whether a convex polygon holds a point.
+/// Returns true if a convex polygon contains a point.
 fn contains(corners: &[Pos2; 4], point: Pos2) -> bool {
     let cross = |a: Vec2, b: Vec2| a.x * b.y - a.y * b.x;
     let side = |at: usize| cross(corners[(at + 1) % 4] - corners[at], point - corners[at]);

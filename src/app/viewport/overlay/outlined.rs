@@ -1,10 +1,10 @@
-//! Text that can be read on any picture.
+//! Outlined text that is legible on any picture.
 
 use eframe::egui::{Align2, FontId, Painter, Pos2, vec2};
 
 use crate::app::common::theme;
 
-/// Text that can be read on any picture.
+/// Paints text with an outline that makes it legible on any picture.
 pub(super) fn outlined(painter: &Painter, at: Pos2, align: Align2, text: &str) {
     let font = FontId::proportional(12.0);
     for offset in [vec2(1.0, 0.0), vec2(-1.0, 0.0), vec2(0.0, 1.0), vec2(0.0, -1.0)] {

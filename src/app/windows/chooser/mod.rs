@@ -1,4 +1,4 @@
-//! The window in which one of several volumes of a file is chosen: names, sizes and a small picture of each.
+//! Window that chooses one of several volumes of a file: names, sizes and a thumbnail of each.
 
 mod previews;
 
@@ -16,25 +16,25 @@ use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text;
 use crate::data::load::{Aspect, LoadOptions};
 
-/// Points of a picture's longer edge.
+/// Longer edge of a thumbnail, in points.
 const PICTURE: f32 = 48.0;
-/// Points between a picture and what is around it.
+/// Margin around a thumbnail, in points.
 const MARGIN: f32 = 4.0;
-/// Points of a row.
+/// Height of a row, in points.
 const ROW: f32 = PICTURE + 2.0 * MARGIN;
-/// Points of the list's width: names of series take two dozen words at most.
+/// Width of the list, in points: names of series take two dozen words at most.
 const WIDTH: f32 = 360.0;
-/// Rows that are shown at once.
+/// Number of rows that are visible at once.
 const ROWS: f32 = 7.0;
 
-/// The window.
+/// State of the window, with the thumbnails that it has made.
 #[derive(Default)]
 pub(crate) struct Chooser {
     open: Option<Aspect>,
     selected: usize,
-    /// The selected row is to be scrolled to.
+    /// True if the list is to scroll to the selected row.
     scrolls: bool,
-    /// What the user has said about looks, for each aspect.
+    /// User's choice for each aspect whether the look stays; `None` for the default.
     keeps_look: [Option<bool>; Aspect::ALL.len()],
     previews: Previews,
 }
@@ -46,12 +46,12 @@ impl std::fmt::Debug for Chooser {
 }
 
 impl Chooser {
-    /// Shows what there is in an aspect.
+    /// Opens the window for the alternatives in one aspect.
     pub(crate) fn open(&mut self, aspect: Aspect, alternatives: &Alternatives<'_>) {
         (self.open, self.selected, self.scrolls) = (Some(aspect), alternatives.at(), true);
     }
 
-    /// Whether the look stays when another volume is chosen.
+    /// Returns true if the look stays when another volume is chosen in this aspect.
     pub(crate) fn keeps_look(&self, aspect: Aspect) -> bool {
         self.keeps_look[aspect.index()].unwrap_or_else(|| aspect.keeps_look())
     }
@@ -61,7 +61,8 @@ impl Chooser {
         self.previews.rest();
     }
 
-    /// Shows the window, and adds what was chosen. Before anything else takes the arrow keys.
+    /// Shows the window, and adds the command for the chosen volume. Must run before other widgets take the arrow
+    /// keys.
     pub(crate) fn ui(
         &mut self,
         ctx: &egui::Context,
@@ -104,11 +105,11 @@ impl Chooser {
         }
     }
 
-    /// Moves through the list; whether Enter and Escape were pressed.
+    /// Moves the selection by the keyboard; returns whether Enter and Escape were pressed.
     fn keys(&mut self, ctx: &egui::Context, count: usize) -> (bool, bool) {
         let last = count.saturating_sub(1);
         self.selected = self.selected.min(last);
-        // A button that has the focus has its own Enter.
+        // A focused button handles Enter itself.
         if is_typing(ctx) || ctx.memory(egui::Memory::focused).is_some() {
             return (false, false);
         }
@@ -124,7 +125,7 @@ impl Chooser {
         (pressed(Key::Enter) > 0, pressed(Key::Escape) > 0)
     }
 
-    /// The list; the rows that are seen.
+    /// Shows the list; returns the range of visible rows.
     fn list(&mut self, ui: &mut Ui, all: &Alternatives<'_>, chosen: &mut Option<usize>) -> Range<usize> {
         ui.spacing_mut().item_spacing.y = 0.0;
         let height = (all.count() as f32).min(ROWS) * ROW;
@@ -146,7 +147,7 @@ impl Chooser {
         seen
     }
 
-    /// A row; whether it was clicked.
+    /// Shows a row; returns true if it was clicked.
     fn row(&self, ui: &mut Ui, all: &Alternatives<'_>, at: usize) -> bool {
         let (rect, row) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
         let (name, is_shown) = (all.name(at), at == all.at());

@@ -1,5 +1,5 @@
-//! Small pictures of the volumes of a file: the middle slice of each, made one after the other beside the window. Of those
-//! whose size is known, nothing else is read where the file allows that.
+//! Thumbnails of the volumes of a file: the middle slice of each, made one after another on a background thread. If
+//! the size of a volume is known, only that slice is read where the format allows it.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -14,40 +14,40 @@ use crate::app::worker::task::Work;
 use crate::data::load::{Choice, LoadControl, LoadOptions, Portion, Region, Stretch};
 use crate::data::{Volume, open};
 
-/// Pixels of the longer edge: twice the points, for dense screens.
+/// Longer edge of a thumbnail, in pixels: twice the points, for high-density screens.
 const EDGE: f64 = 96.0;
 
-/// Pictures that are kept: 10 MB on the graphics adapter.
+/// Largest number of cached thumbnails: 10 MB on the graphics adapter.
 const MOST: usize = 256;
 
-/// Bytes of the largest volume that is read for a picture: seconds from a slow disk, and little beside the volume that is
-/// open.
+/// Size in bytes of the largest volume that is read for a thumbnail: seconds from a slow disk, and little beside the
+/// open volume.
 const LARGEST_BYTES: u64 = 256 << 20;
 
-/// Pictures that were made, and the one that is being made.
+/// Cached thumbnails, and the one in progress.
 #[derive(Default)]
 pub(super) struct Previews {
-    /// What they are of.
+    /// File or folder that the thumbnails belong to.
     source: PathBuf,
-    /// Of a folder, the files that are open.
+    /// Open files of a folder, if the source is one.
     among: Option<Arc<[PathBuf]>>,
-    /// The latest last; nothing in place of a picture that could not be made.
+    /// Finished thumbnails, the latest last; `None` where it could not be made.
     made: Vec<(Choice, Option<TextureHandle>)>,
     making: Option<Making>,
 }
 
-/// What is known of a picture.
+/// State of one volume's thumbnail.
 #[derive(Clone, Copy)]
 pub(super) enum Preview<'a> {
-    /// It waits for others.
+    /// Not made yet: other thumbnails come first.
     NotYet,
-    /// It could not be made.
+    /// Could not be made, and is not retried.
     Never,
-    /// It is there.
+    /// Finished, as a texture on the GPU.
     Picture(&'a TextureHandle),
 }
 
-/// It ends when nobody wants it any more.
+/// Thumbnail in progress; dropping this cancels it.
 struct Making {
     choice: Choice,
     control: Arc<LoadControl>,
@@ -61,19 +61,19 @@ impl Drop for Making {
 }
 
 impl Previews {
-    /// Forgets the pictures of another file.
+    /// Forgets the thumbnails if the file is another.
     pub(super) fn look_at(&mut self, source: &Path, among: Option<&Arc<[PathBuf]>>) {
         if self.source != source || self.among.as_ref() != among {
             *self = Self { source: source.to_owned(), among: among.cloned(), ..Self::default() };
         }
     }
 
-    /// Stops to make pictures; those that there are stay.
+    /// Stops making thumbnails; the finished ones stay.
     pub(super) fn rest(&mut self) {
         self.making = None;
     }
 
-    /// The picture of a volume, as far as it is known.
+    /// Returns the thumbnail of a volume, or its state.
     pub(super) fn get(&self, choice: &Choice) -> Preview<'_> {
         match self.made.iter().find(|(known, _)| known == choice) {
             None => Preview::NotYet,
@@ -86,8 +86,8 @@ impl Previews {
         !matches!(self.get(choice), Preview::NotYet)
     }
 
-    /// Takes what has been made, and makes the picture of the first volume in a list that has none.
-    /// Of each comes the grid with it, if it is known.
+    /// Collects the finished thumbnail, and starts that of the first listed volume that has none. Each volume is
+    /// listed with its grid size, if that is known.
     pub(super) fn make(
         &mut self,
         wanted: &[(Choice, Option<[usize; 3]>)],
@@ -104,7 +104,7 @@ impl Previews {
             }
             self.made.push((making.choice.clone(), texture));
         }
-        // What has been scrolled away is not waited for.
+        // A thumbnail that has scrolled out of view is cancelled.
         let is_wanted = |making: &Making| wanted.iter().any(|(choice, _)| *choice == making.choice);
         if self.making.as_ref().is_some_and(|making| !is_wanted(making)) {
             self.making = None;
@@ -118,7 +118,7 @@ impl Previews {
         let (choice_of, among) = (choice.clone(), self.among.clone());
         let options = LoadOptions { choice: choice_of, among, memory_budget_bytes, ..options.clone() };
         let (source, watched) = (self.source.clone(), Arc::clone(&control));
-        // What is read in part already stays as it is.
+        // A choice that is a portion already stays as it is.
         let slice = grid.filter(|_| options.choice.portion.is_none()).map(middle_slice);
         let task = move || {
             let of_slice = slice.and_then(|portion| {
@@ -128,21 +128,21 @@ impl Previews {
             let volume = of_slice.or_else(|| open(&source, &options, &watched).ok())?;
             middle(&volume)
         };
-        // Without a thread there is no picture.
+        // Without a thread there is no thumbnail.
         if let Ok(work) = Work::start("preview", ctx, task) {
             self.making = Some(Making { choice: choice.clone(), control, work });
         }
     }
 }
 
-/// The middle slice of a grid.
+/// Portion that contains only the middle slice of a grid.
 fn middle_slice([_, _, count]: [usize; 3]) -> Portion {
     let all = Stretch { first: 0, end: None };
     let middle = Stretch { first: count / 2, end: Some(count / 2 + 1) };
     Portion { region: Some(Region([all, all, middle])), ..Portion::default() }
 }
 
-/// The middle slice in greys, as small as it is shown and with its proportions.
+/// Renders the middle slice in greys, at thumbnail size and with its physical proportions.
 fn middle(volume: &Volume) -> Option<ColorImage> {
     let shown = volume.shown_range();
     let table = lookup(volume, Grey { black: shown.low, white: shown.high }, None);
@@ -167,7 +167,7 @@ mod tests {
 
     #[test]
     fn pictures_show_the_middle_in_its_proportions() {
-        // Bright in the middle slice alone; pixels twice as high as wide.
+        // Bright in the middle slice only; pixels twice as high as wide.
         let values = (0..3 * 4 * 4).map(|at| if at / 16 == 1 { 9 } else { 0 }).collect();
         let spacing = DVec3::new(1.0, 2.0, 1.0);
         let volume = Volume::with_spacing("t", [4, 4, 3], spacing, Samples::U8(values)).unwrap();
@@ -204,7 +204,7 @@ mod tests {
         bytes.extend((0..24).map(|at| at * 10));
         std::fs::write(&file, bytes).unwrap();
         let ctx = egui::Context::default();
-        // The last step, and the size of another, are not those of the file.
+        // The last time step does not exist, and the size of another one is wrong.
         let step = |step| Choice { frame: Some(step), ..Choice::default() };
         let steps = [0, 1, 2, 3].map(|at| (step(at), Some([2, 2, if at == 1 { 9 } else { 2 }])));
         let mut previews = Previews::default();

@@ -1,5 +1,5 @@
-//! A contact sheet: looks that are tried on the open volume. Whole ones, lights (rigs, and places for the selected
-//! light, all of them or the best), or the library's presets.
+//! Contact sheet: looks tried on the open volume as small pictures. Whole looks, lights (rigs and positions for the
+//! selected light, all of them or the best), or the library's presets.
 
 mod sheet;
 
@@ -20,33 +20,33 @@ use crate::model::Settings;
 
 pub(in crate::app) use self::sheet::{SIZE as SMALL, Sheet, small_picture};
 
-/// Points that the window has above the pictures and below them: its default place, its title, the row of buttons, and
+/// Height above and below the pictures, in points: default position of the window, its title, the row of buttons, and
 /// margins.
 const AROUND: f32 = 170.0;
-/// Points of the lowest sheet: a picture with its name.
+/// Smallest height of the sheet, in points: one picture with its name.
 const LEAST_HEIGHT: f32 = 150.0;
 
-/// Pictures side by side, before somebody makes the window wider or narrower.
+/// Number of columns before the user resizes the window.
 const COLUMNS: usize = 4;
-/// The most of them: as many as the largest sheets have.
+/// Largest number of columns: that of the largest sheets.
 const MOST_COLUMNS: usize = 12;
 
-/// Points between pictures.
+/// Gap between pictures, in points.
 const GAP: f32 = 8.0;
-/// Widths of pictures as shares of that which they were made for: from where they are still told apart to where they are
-/// blurred.
+/// Range of picture widths relative to their rendered width: from where they can still be told apart to where they
+/// look blurred.
 const WIDTHS: std::ops::RangeInclusive<f32> = 0.65..=1.35;
 
-/// How pictures lie side by side.
+/// Grid layout of the pictures in the window.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Tiles {
     columns: usize,
-    /// Points of a picture.
+    /// Width of a picture, in points.
     width: f32,
 }
 
 impl Tiles {
-    /// As they fill a width, with as few places left empty in the last row as can be, and about as large as they were made.
+    /// Layout that fills a width with the fewest empty places in the last row, at about the rendered size.
     fn within(room: f32, count: usize) -> Self {
         let made = SIZE[0] as f32;
         let width = |columns: usize| (room + GAP) / columns as f32 - GAP;
@@ -58,39 +58,39 @@ impl Tiles {
             .min_by(|&a, &b| empty(a).cmp(&empty(b)).then(off(a).total_cmp(&off(b))));
         match best {
             Some(columns) => Self { columns, width: width(columns) },
-            // Narrower than one, or wider than all.
+            // Narrower than one picture, or wider than all.
             None if room < made => Self { columns: 1, width: room.max(1.0) },
             None => Self { columns: MOST_COLUMNS, width: made },
         }
     }
 }
 
-/// A candidate and its small picture, on the GPU of the window.
+/// Candidate look with its small picture, as a texture of the window.
 struct Print {
     name: String,
     tip: String,
     command: Command,
     texture: TextureHandle,
-    /// It is for data of this kind.
+    /// True if the candidate suits the kind of data.
     fits: bool,
 }
 
-/// A sheet whose pictures are being made.
+/// Contact sheet in progress on a background thread.
 struct Trying {
     work: Work<Result<(), String>>,
-    /// What has been tried, and how many there will be.
+    /// Finished candidates, each with the total number of candidates.
     tried: mpsc::Receiver<(usize, Tried)>,
-    /// Whether pictures of a sheet before are still shown.
+    /// True while the pictures of the previous sheet are still shown.
     is_fresh: bool,
     count: usize,
     sheet: Sheet,
-    /// What is tried on: the look, and the light that is selected.
+    /// Look and selected light that the candidates are derived from.
     of: (Settings, usize),
     is_unwanted: Arc<AtomicBool>,
 }
 
 impl Trying {
-    /// It ends at its next picture, and nobody looks at what it has made.
+    /// Requests the task to end at its next picture; its further results are discarded.
     fn cancel(&self) {
         self.is_unwanted.store(true, Ordering::Relaxed);
     }
@@ -106,19 +106,19 @@ impl Drop for Trying {
     }
 }
 
-/// The window.
+/// State of the contact sheet window.
 #[derive(Default)]
 pub(crate) struct ContactSheet {
-    /// Whether it is shown.
+    /// True while the window is shown.
     open: bool,
-    /// What it shows.
+    /// Kind of sheet that the window shows.
     sheet: Sheet,
-    /// Whether pictures are to be made as soon as that is possible.
+    /// True if pictures are to be made as soon as possible.
     is_due: bool,
-    /// One at a time: each takes a device of its own.
+    /// Sheet in progress; one at a time, because each opens a device of its own.
     trying: Option<Trying>,
     prints: Vec<Print>,
-    /// What was taken last.
+    /// Name of the candidate that was chosen last.
     chosen: Option<String>,
 }
 
@@ -129,7 +129,7 @@ impl std::fmt::Debug for ContactSheet {
 }
 
 impl ContactSheet {
-    /// Opens the window and asks for pictures.
+    /// Opens the window and requests pictures.
     pub(crate) fn open(&mut self, sheet: Sheet) {
         if self.sheet != sheet {
             self.prints.clear();
@@ -138,27 +138,27 @@ impl ContactSheet {
         (self.open, self.is_due, self.sheet) = (true, true, sheet);
     }
 
-    /// Closes the window and forgets what it shows: the volume has been replaced.
+    /// Closes the window and discards its pictures, because the volume has been replaced.
     pub(crate) fn forget(&mut self) {
         self.prints.clear();
         (self.open, self.is_due) = (false, false);
         self.cancel();
     }
 
-    /// Whether pictures are to be made.
+    /// Returns true if pictures are to be made.
     pub(crate) fn is_due(&self) -> bool {
         self.is_due
     }
 
-    /// What is being made is not wanted any more.
+    /// Cancels the sheet in progress, if any.
     fn cancel(&self) {
         if let Some(trying) = &self.trying {
             trying.cancel();
         }
     }
 
-    /// Starts to make the pictures, or goes on where the same are being made. Others end first, so that a key that is
-    /// held starts one thread and not many. Without a subject there is nothing to try on.
+    /// Starts to render the pictures, or continues if the same ones are in progress. Another sheet in progress ends
+    /// first, so that a held key starts one thread and not many. Without a subject nothing is started.
     pub(crate) fn start(&mut self, subject: Option<Subject>, ctx: &egui::Context) -> Result<(), String> {
         let Some(subject) = subject else {
             self.is_due = false;
@@ -180,7 +180,7 @@ impl ContactSheet {
         let wake = ctx.clone();
         let task = move || {
             let hand_on = |count: usize, of: Tried| {
-                // Nobody looks any more when the receiver is gone.
+                // The receiver may be gone; the result is then dropped.
                 drop(sender.send((count, of)));
                 wake.request_repaint();
             };
@@ -191,10 +191,10 @@ impl ContactSheet {
         Ok(())
     }
 
-    /// Takes what has been made, unless nobody wants it any more.
+    /// Collects the finished pictures, unless the sheet was cancelled.
     fn take(&mut self, ctx: &egui::Context) -> Result<(), String> {
         let Some(trying) = &mut self.trying else { return Ok(()) };
-        // Asked before what was handed on is taken: nothing comes after the end.
+        // Queried before the channel is drained: nothing is sent after the end of the task.
         let result = trying.work.take();
         for (count, (look, picture)) in trying.tried.try_iter() {
             if trying.is_unwanted.load(Ordering::Relaxed) {
@@ -211,7 +211,7 @@ impl ContactSheet {
         if is_unwanted { Ok(()) } else { result.and_then(|result| result) }
     }
 
-    /// Shows the window, and adds what was chosen. An error says why there are no pictures.
+    /// Shows the window, and adds the command of the chosen look. An error says why there are no pictures.
     pub(crate) fn ui(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) -> Result<(), String> {
         let outcome = self.take(ctx);
         let mut open = self.open;
@@ -233,7 +233,7 @@ impl ContactSheet {
                 ui.add_space(theme::HANDLE_RADIUS);
                 ui.weak(text::contact_sheet::QUALITY);
             });
-            // Low windows have bars instead of a sheet that hangs over.
+            // In a low window the sheet scrolls instead of overflowing.
             let most = (ctx.content_rect().height() - AROUND).max(LEAST_HEIGHT);
             let area = egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most);
             area.show(ui, |ui| {
@@ -247,7 +247,7 @@ impl ContactSheet {
                         }
                         ui.vertical(|ui| {
                             let image = egui::Image::new((tried.texture.id(), size));
-                            // What is for other data is there, and no more.
+                            // Candidates for other kinds of data are dimmed.
                             let tint = if tried.fits {
                                 egui::Color32::WHITE
                             } else {
@@ -292,7 +292,7 @@ mod tests {
     use crate::data::{Dataset, synthetic::builtin};
     use crate::gpu::Context;
 
-    /// The flag of the thread that makes pictures, if one does.
+    /// Cancel flag of the running thread, if there is one.
     fn flag(sheet: &ContactSheet) -> Option<Arc<AtomicBool>> {
         sheet.trying.as_ref().map(|trying| Arc::clone(&trying.is_unwanted))
     }
@@ -308,7 +308,7 @@ mod tests {
                 assert!((width / SIZE[0] as f32) < 1.36, "{count} in {room}: {width}");
             }
         }
-        // Ten pictures in a window that has room for almost four: none stands alone.
+        // Ten pictures in a window that almost fits four columns: no picture is alone in a row.
         assert_eq!(tiles(720.0, 10).columns, 5);
         assert_eq!(tiles(728.0, 12).columns, 4);
         assert_eq!(tiles(100.0, 10), Tiles { columns: 1, width: 100.0 });
@@ -339,7 +339,7 @@ mod tests {
             assert!(Arc::ptr_eq(&first, &again) && !sheet.is_due(), "it is on its way");
         }
         assert!(!first.load(Ordering::Relaxed));
-        // Something else is wanted: the first one ends, and only then there is another.
+        // For another subject the first task ends before the second starts.
         let other = Subject { selected_light: 1, ..subject };
         let still = ask(&mut sheet, Some(&other)).expect("a thread");
         assert!(Arc::ptr_eq(&first, &still) && first.load(Ordering::Relaxed) && sheet.is_due());

@@ -1,4 +1,4 @@
-//! What contact sheets try, and what it looks like.
+//! Candidates of contact sheets, and their rendering as small pictures.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -14,46 +14,46 @@ use crate::model::{
     Camera, ImageSpec, Kernel, Light, PRESETS, Preset, Resolution, Rig, Settings, Slabs, auto,
 };
 
-/// Pixels of a picture: 4:3, as first looks are framed, and four of them with what lies between are no wider than a
-/// window of 1280 points has beside its panel.
+/// Size of a picture in pixels: 4:3, as first looks are framed, and four of them with their gaps are no wider than
+/// the space that a window of 1280 points has beside its panel.
 pub(in crate::app) const SIZE: [u32; 2] = [176, 132];
-/// Places for the selected light, as hours of a clock face around the line of sight.
+/// Positions for the selected light, as hours of a clock face around the line of sight.
 const HOURS: [u32; 6] = [10, 12, 2, 4, 6, 8];
-/// Degrees from the line of sight to those places: nearer to it few shadows are seen, and at 90° half of what is seen has
-/// no light.
+/// Angle from the line of sight to those positions, in degrees: closer to it few shadows are visible, and at 90° half
+/// of the visible surface is unlit.
 const ASIDE_DEG: f64 = 55.0;
 
-/// What is tried.
+/// Kind of contact sheet, by what its candidates vary.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum Sheet {
-    /// Rigs, and places for the selected light.
+    /// Lighting rigs, and positions for the selected light.
     #[default]
     Lights,
-    /// Presets of the library.
+    /// Transfer function presets of the library.
     Presets,
-    /// Whole looks.
+    /// Whole looks that are proposed for the volume.
     Looks,
-    /// The best places for the selected light.
+    /// Best positions for the selected light, found by search.
     Suggestions,
 }
 
-/// A look to try.
+/// Candidate look of a contact sheet.
 #[derive(Debug, Clone)]
 pub(super) struct Candidate {
     pub name: String,
     pub tip: String,
     pub settings: Settings,
-    /// What takes it over.
+    /// Command that applies the candidate.
     pub command: Command,
-    /// It is for data of this kind.
+    /// True if the candidate suits the kind of data.
     pub fits: bool,
 }
 
-/// A look, and what it looks like.
+/// Candidate look and its small picture.
 pub(super) type Tried = (Candidate, ColorImage);
 
 impl Sheet {
-    /// The title of the window.
+    /// Title of the contact sheet window.
     pub(super) fn title(self) -> &'static str {
         match self {
             Self::Lights => text::contact_sheet::LIGHTS,
@@ -63,8 +63,8 @@ impl Sheet {
         }
     }
 
-    /// Tries everything, until nobody wants it any more; each picture is handed on when it is made, with how many there
-    /// will be. An error says why there are no more.
+    /// Renders all candidates until cancelled; each picture is passed to `hand_on` when it is finished, with the
+    /// total number of candidates. An error says why there are no more.
     pub(super) fn try_all(
         self,
         subject: &Subject,
@@ -75,7 +75,7 @@ impl Sheet {
         let mut worker = Worker::new(subject)?;
         let mut shown = 0;
         if self == Self::Suggestions && subject.settings.lights.get(subject.selected_light).is_some() {
-            // The search takes longer than anybody likes to look at nothing; and this is what it is to be better than.
+            // Shown first, because the search takes long, and as the reference for the suggestions.
             let Settings { lights, .. } = subject.settings.clone();
             let now = with(text::contact_sheet::AS_IT_IS.to_owned(), lights, &subject.settings);
             let picture = small_picture(&mut worker, subject, &closer(&now.settings, subject))?;
@@ -97,7 +97,8 @@ impl Sheet {
     }
 }
 
-/// The look from as near as the object's frame allows, if all of it is seen: small pictures have no room for what is around.
+/// Moves the camera as close as the outline of the object allows, if all of it is visible: small pictures have no
+/// space for surroundings.
 fn closer(settings: &Settings, subject: &Subject) -> Settings {
     let mut closer = settings.clone();
     if let Some(outline) = subject.outline.as_ref().filter(|outline| !outline.is_empty()) {
@@ -109,7 +110,7 @@ fn closer(settings: &Settings, subject: &Subject) -> Settings {
     closer
 }
 
-/// A picture of a look, made quickly.
+/// Renders a small picture of a look with quick settings.
 pub(in crate::app) fn small_picture(
     worker: &mut Worker,
     subject: &Subject,
@@ -118,13 +119,13 @@ pub(in crate::app) fn small_picture(
     picture(worker, subject, &quick(settings))
 }
 
-/// A picture of a look.
+/// Renders a small picture of a look with its own settings.
 fn picture(worker: &mut Worker, subject: &Subject, settings: &Settings) -> Result<ColorImage, String> {
     let shown = worker.render(subject, settings, &ImageSpec::new(SIZE))?;
     Ok(ColorImage::from_rgba_unmultiplied(SIZE.map(|n| n as usize), &shown))
 }
 
-/// The look with each preset laid over it, but for that of the benchmarks; those for other kinds of data come last.
+/// Candidates with each preset applied, except that of the benchmarks; presets for other kinds of data come last.
 fn with_presets(settings: &Settings, volume: &Volume) -> Vec<Candidate> {
     let ranges = volume.ranges();
     let kind = volume.kind().kind;
@@ -144,20 +145,20 @@ fn with_presets(settings: &Settings, volume: &Volume) -> Vec<Candidate> {
         .collect()
 }
 
-/// The look with other lights.
+/// Candidate with other lights than the current look.
 fn with(name: String, lights: Vec<Light>, settings: &Settings) -> Candidate {
     let settings = Settings { lights: lights.clone(), ..settings.clone() };
     let tip = text::contact_sheet::USE_TIP.to_owned();
     Candidate { name, tip, settings, command: Command::UseLights(lights), fits: true }
 }
 
-/// The look with each choice of lights.
+/// Candidates with each choice of lights.
 fn with_lights(settings: &Settings, selected: usize) -> Vec<Candidate> {
     let choices = lights_to_try(settings, selected).into_iter();
     choices.map(|(name, lights)| with(name, lights, settings)).collect()
 }
 
-/// The look with the selected light at the places that do most for it, the best first.
+/// Candidates with the selected light at the positions of the light search, best first.
 fn suggested(
     subject: &Subject,
     worker: &Worker,
@@ -174,7 +175,7 @@ fn suggested(
     let best = found.map(|found| found.best).unwrap_or_default().into_iter().enumerate();
     Ok(best
         .map(|(at, suggestion)| {
-            // As bright as the picture will be when its balance is kept.
+            // Exposed as the picture will be when its balance is kept.
             let mut shown = settings.clone();
             shown.shadows.balance = suggestion.balance;
             with(text::contact_sheet::suggestion(&light.name, at + 1), suggestion.lights, &shown)
@@ -182,7 +183,7 @@ fn suggested(
         .collect())
 }
 
-/// Whole looks of the volume, on a small copy of it.
+/// Renders the proposed whole looks of the volume, on a small copy of it.
 fn looks(
     subject: &Subject,
     worker: &mut Worker,
@@ -195,7 +196,7 @@ fn looks(
     let on_small = Subject { dataset: small, ..subject.clone() };
     let count = proposals.len();
     for (at, proposal) in proposals.into_iter().enumerate().take_while(|_| is_wanted()) {
-        // The brightness of the first is known.
+        // The brightness of the first look has been measured already.
         let look = if at == 0 {
             SmallLook::known(whole, &on_small.dataset, proposal.settings)
         } else {
@@ -216,7 +217,7 @@ fn looks(
     Ok(())
 }
 
-/// The lights that are tried, and what they are called.
+/// Choices of lights to try, with their names.
 fn lights_to_try(settings: &Settings, selected: usize) -> Vec<(String, Vec<Light>)> {
     let mut all: Vec<_> =
         Rig::ALL.iter().map(|rig| (rig.name().to_owned(), rig.lights(&settings.camera))).collect();
@@ -231,7 +232,7 @@ fn lights_to_try(settings: &Settings, selected: usize) -> Vec<(String, Vec<Light
     all
 }
 
-/// A place on a clock face around the line of sight, as far from the middle as the light is.
+/// Position on a clock face around the line of sight, at the light's distance from the centre, in scene space.
 fn at_hour(light: &Light, camera: &Camera, hour: u32) -> DVec3 {
     let view = camera.scene_from_view();
     let (sin, cos) = (f64::from(hour) / 12.0 * std::f64::consts::TAU).sin_cos();
@@ -240,15 +241,15 @@ fn at_hour(light: &Light, camera: &Camera, hour: u32) -> DVec3 {
     (view.x_axis * (sin * aside) + view.y_axis * (cos * aside) + view.z_axis * along) * distance
 }
 
-/// Directions of a sky, and points of a light, that do for a small picture.
+/// Number of sky directions, and of points of an area light, that suffice for a small picture.
 const FEW_DIRECTIONS: u32 = 16;
 
-/// Slabs that leave no grain: small pictures have few pixels, and small volumes large voxels.
+/// Chooses slabs that leave no grain: small pictures have few pixels, and small volumes large voxels.
 fn even_faces(settings: &mut Settings) {
     (settings.sampling.slabs, settings.sampling.slab) = (Slabs::ByNeed, 1.0);
 }
 
-/// Quick settings for a small picture.
+/// Returns quick settings for a small picture.
 fn quick(settings: &Settings) -> Settings {
     let mut quick = settings.clone();
     quick.shadows.resolution = Resolution::Half;
@@ -290,7 +291,7 @@ mod tests {
         assert_eq!(last_that_fits, presets.iter().position(|look| !look.fits).map(|first| first - 1));
         assert_eq!(presets.len(), PRESETS.len() - 1);
         let usual = Settings::default();
-        // Those of light are for any curve.
+        // Presets of light leave the curve as it is.
         let differs = |look: &Settings| {
             look.transfer != usual.transfer || look.sky != usual.sky || look.scattering != usual.scattering
         };

@@ -1,4 +1,4 @@
-//! The export window: what is made, how large and how fine, and into which file.
+//! Export window: kind of export, size, samples, format, marks and file.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
@@ -18,14 +18,14 @@ const KINDS: [(Kind, Named); 3] = [
     (Kind::LightTurn, text::export::LIGHT_TURN),
 ];
 
-/// Files for a picture, and their ending.
+/// File formats of a picture, with their extensions.
 const STILLS: [(Depth, Named, &str); 3] = [
     (Depth::Eight, text::export::PNG, "png"),
     (Depth::Sixteen, text::export::PNG_16, "png"),
     (Depth::Linear, text::export::EXR, "exr"),
 ];
 
-/// Files for a turn, and their ending.
+/// File formats of an animation, with their extensions.
 const TURNS: [(AnimationFormat, Named, &str); 4] = [
     (AnimationFormat::Apng, text::export::APNG, "png"),
     (AnimationFormat::Gif, text::export::GIF, "gif"),
@@ -33,13 +33,13 @@ const TURNS: [(AnimationFormat, Named, &str); 4] = [
     (AnimationFormat::Folder, text::export::FOLDER, ""),
 ];
 
-/// All endings of files that are written.
+/// Extensions of all files that can be written.
 const ENDINGS: [&str; 5] = ["png", "apng", "exr", "gif", "mp4"];
 
 impl Export {
-    /// Shows the window if it is open.
+    /// Shows the window if it is open, and returns the user's request.
     ///
-    /// `is_anatomical`: the volume says which side of a body is where.
+    /// `is_anatomical`: the volume has anatomical directions.
     pub(in crate::app) fn ui(
         &mut self,
         ctx: &egui::Context,
@@ -107,7 +107,7 @@ impl Export {
         request
     }
 
-    /// What is written over the picture.
+    /// Row of switches for the marks drawn over the picture.
     fn marks_ui(&mut self, ui: &mut Ui, is_anatomical: bool) {
         ui.horizontal_wrapped(|ui| {
             ui.label(text::export::MARKS);
@@ -123,7 +123,7 @@ impl Export {
         });
     }
 
-    /// Where the file goes, if the name does not say all of it.
+    /// Shows the absolute path of the file, if the typed one is relative.
     fn destination_ui(&self, ui: &mut Ui) {
         let whole = destination::whole(&self.path);
         if whole != Path::new(self.path.trim()) {
@@ -132,7 +132,7 @@ impl Export {
         }
     }
 
-    /// What was written last, and how to get there.
+    /// Shows the file that was written last, with buttons to open its folder and copy its path.
     fn last_ui(&self, ui: &mut Ui) -> Option<Request> {
         let last = self.last.as_ref().filter(|_| !self.is_busy())?;
         let mut request = None;
@@ -152,22 +152,22 @@ impl Export {
         request
     }
 
-    /// Whether there is a file of that name, which the user has not agreed to replace.
+    /// Returns true if the file exists and the user has not agreed to replace it.
     fn would_replace(&self) -> bool {
         self.is_there() && self.agreed.as_deref() != Some(Path::new(self.path.trim()))
     }
 
-    /// Whether what is written has the name of something that is there: a file, or one of the pictures in a folder.
+    /// Returns true if the export would overwrite a file: the target, or a picture in the target folder.
     fn is_there(&self) -> bool {
         let path = Path::new(self.path.trim());
         let is_folder = self.kind != Kind::Still && self.animation() == AnimationFormat::Folder;
         path.is_file() || is_folder && frame_names(path, self.frames).iter().any(|name| name.exists())
     }
 
-    /// Asks whether the file may be replaced; whether it may.
+    /// Asks whether the file may be replaced; returns true if the user agrees.
     fn question_ui(&mut self, ui: &mut Ui) -> bool {
         let path = PathBuf::from(self.path.trim());
-        // Another name was typed meanwhile.
+        // The name may have been edited meanwhile.
         self.asks = self.is_there();
         let mut agreed = false;
         ui.horizontal(|ui| {
@@ -178,12 +178,12 @@ impl Export {
         agreed
     }
 
-    /// What a turn is written as.
+    /// Format of an animation, by the extension of its path.
     pub(crate) fn animation(&self) -> AnimationFormat {
         AnimationFormat::of_path(Path::new(self.path.trim()))
     }
 
-    /// Turns and pictures are not written as the same kinds of files.
+    /// Sets the kind of export; changes the extension if its file formats differ.
     fn set_kind(&mut self, kind: Kind) {
         if (self.kind == Kind::Still) != (kind == Kind::Still) {
             self.set_ending("png");
@@ -192,12 +192,12 @@ impl Export {
         self.follow_name();
     }
 
-    /// What the name says of the depth holds.
+    /// Sets the bit depth to one that the file name's format allows.
     pub(crate) fn follow_name(&mut self) {
         self.shot.depth = PictureFormat::of_path(Path::new(self.path.trim())).depth(self.shot.depth);
     }
 
-    /// Gives the name an ending, instead of one of ours if it has one: what follows another dot is a part of it.
+    /// Replaces a known extension of the file name, or appends one; other text after a dot is part of the name.
     fn set_ending(&mut self, ending: &str) {
         let path = Path::new(self.path.trim());
         let known =
@@ -209,7 +209,7 @@ impl Export {
         }
     }
 
-    /// How fine a picture is, and what its file holds.
+    /// Rows for the samples per pixel of a picture, and its file format.
     fn still_ui(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
             ui.label(text::export::SAMPLES.name);
@@ -236,7 +236,7 @@ impl Export {
         });
     }
 
-    /// How many pictures a turn has, how fast they go by, and what its file is.
+    /// Rows for the number of frames of a turntable, its frame rate and its file format.
     fn turn_ui(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
             let field = egui::DragValue::new(&mut self.frames)
@@ -258,7 +258,7 @@ impl Export {
     }
 
     fn progress_ui(&self, ui: &mut Ui) {
-        // First, so that it stays where it is when there is something to count.
+        // Comes first, so that it stays in place when the progress bar appears.
         if ui.button(text::common::CANCEL).clicked() {
             self.cancel();
         }
@@ -290,7 +290,7 @@ impl Export {
                 ui.name_inputs(name, |ui| ui.add(field));
             }
             let [width, height] = self.shot.size.map(f64::from);
-            // At the 300 dots per inch that journals ask for.
+            // At 300 dots per inch, as journals require.
             ui.weak(text::export::on_paper(width / 300.0 * 25.4, height / 300.0 * 25.4));
         });
         ui.horizontal(|ui| {

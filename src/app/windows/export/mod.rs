@@ -1,4 +1,4 @@
-//! Export: what the user asks for, the window that asks, and the worker that does it.
+//! Export of pictures and animations: the user's choices, the export window, and the worker that renders and writes.
 
 mod destination;
 mod dialog;
@@ -18,13 +18,13 @@ use crate::app::worker::task::Work;
 use crate::export::{AnimationFormat, AnimationSpec};
 use crate::model::ImageSpec;
 
-/// How long a window that closes waits for an export to end: a part of a picture takes seconds on slow adapters.
+/// Longest wait of a closing window for an export to end: a part of a picture takes seconds on slow adapters.
 const LONGEST_WAIT: Duration = Duration::from_secs(10);
 
-/// What is made.
+/// Kind of export: still or turntable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    /// One picture.
+    /// A single still picture.
     Still,
     /// A turntable of the camera.
     Turntable,
@@ -32,29 +32,29 @@ enum Kind {
     LightTurn,
 }
 
-/// What the user asks of the export window.
+/// Request of the user to the export window.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Request {
-    /// Choose a file with a dialog.
+    /// Choose a file with the file dialog.
     Choose,
-    /// Render and write.
+    /// Render the picture and write it.
     Export,
-    /// No program shows folders, and why.
+    /// Reports that no file manager could be started, and why.
     NoFolder(String),
 }
 
-/// How far an export is whose window does not say so.
+/// Progress of an export whose window is closed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Unseen {
-    /// Pictures, or parts of one, that are done.
+    /// Number of pictures, or parts of one, that are done.
     pub done: u32,
-    /// That are to be made.
+    /// Number of pictures, or parts of one, in total.
     pub total: u32,
-    /// How long the rest takes, where that can be told.
+    /// Estimated remaining time, once one part is done.
     pub left: Option<Duration>,
 }
 
-/// What is to be exported, and its progress.
+/// State of the export window: specification and progress of the export.
 #[derive(Debug)]
 pub(crate) struct Export {
     open: bool,
@@ -63,16 +63,16 @@ pub(crate) struct Export {
     kind: Kind,
     frames: u32,
     rate: u16,
-    /// The file that may be replaced, as the user has said.
+    /// File that the user has agreed to replace.
     agreed: Option<PathBuf>,
-    /// The user is being asked whether it may.
+    /// True while the user is asked whether the file may be replaced.
     asks: bool,
     progress: Arc<Progress>,
     began: Instant,
     work: Option<Work<Result<Exported, String>>>,
-    /// The user has chosen a name, or typed one.
+    /// True if the user has chosen or typed the file name.
     is_named: bool,
-    /// What was written last.
+    /// File that was written last.
     last: Option<PathBuf>,
 }
 
@@ -97,11 +97,11 @@ impl Default for Export {
 }
 
 impl Export {
-    /// Shows the window, at first with the size of the viewport and the name of the volume.
+    /// Opens the window, at first with the size of the viewport and the name of the volume.
     pub(crate) fn open(&mut self, viewport: [u32; 2], folder: Option<&Path>, volume: &str) {
         self.open = true;
         if !self.is_named {
-            // A folder of pictures has no ending.
+            // A folder of pictures has no extension.
             let ending = Path::new(&self.path).extension().map(std::ffi::OsStr::to_owned).unwrap_or_default();
             let name = Path::new(&destination::file_name(volume)).with_extension(ending);
             self.path = destination::folder(folder).join(name).display().to_string();
@@ -111,7 +111,7 @@ impl Export {
         }
     }
 
-    /// Where to write.
+    /// Sets the file to write, and opens the window.
     pub(crate) fn set_path(&mut self, path: &Path) {
         self.path = path.display().to_string();
         self.is_named = true;
@@ -119,24 +119,24 @@ impl Export {
         self.open = true;
     }
 
-    /// A file that may be replaced: whoever named it has been asked, or is a program.
+    /// Sets the file to write and permits replacing it: the user has been asked already, or the call comes from a
+    /// program.
     pub(crate) fn agree_to(&mut self, path: &Path) {
         self.set_path(path);
         self.agreed = Some(path.to_owned());
     }
 
-    /// How large.
+    /// Sets the size of the picture in pixels, within the limits.
     pub(crate) fn set_size(&mut self, size: [u32; 2]) {
         self.shot = ImageSpec { size, ..self.shot }.within_limits();
     }
 
-    /// Whether a picture is being made.
+    /// Returns true while an export is in progress.
     pub(crate) fn is_busy(&self) -> bool {
         self.work.is_some()
     }
 
-    /// How many pictures, or parts of one, are done and are to be made, where the window does not say so; `None` while
-    /// nothing is made.
+    /// Progress of an export in progress, if its window is closed.
     pub(crate) fn progress_unseen(&self) -> Option<Unseen> {
         let Progress { done, total, cancelled: _ } = &*self.progress;
         (self.is_busy() && !self.open).then(|| Unseen {
@@ -146,24 +146,24 @@ impl Export {
         })
     }
 
-    /// How long it will take until it is done, where that can be told.
+    /// Estimated remaining time of the export, once one part is done.
     pub(crate) fn left(&self) -> Option<Duration> {
         let [done, total] = [&self.progress.done, &self.progress.total].map(|n| n.load(Ordering::Relaxed));
-        // Of the first one nobody knows how long it takes.
+        // The first part gives no estimate yet.
         (total > 1 && done > 0).then(|| self.began.elapsed() * total.saturating_sub(done) / done)
     }
 
-    /// The picture that would be made, while the window asks.
+    /// Specification of the picture that would be exported, while the window is open.
     pub(crate) fn asked(&self) -> Option<ImageSpec> {
         (self.open && !self.shot.size.contains(&0)).then_some(self.shot)
     }
 
-    /// Ends what is being made.
+    /// Cancels the export in progress.
     pub(crate) fn cancel(&self) {
         self.progress.cancelled.store(true, Ordering::Relaxed);
     }
 
-    /// Ends what is being made, because the window closes, and waits for that: so that nothing is left of it.
+    /// Cancels the export because the window closes, and waits for its end, so that no temporary file remains.
     pub(crate) fn abandon(&mut self) {
         self.cancel();
         let begin = Instant::now();
@@ -172,7 +172,7 @@ impl Export {
         }
     }
 
-    /// How the last export ended, once.
+    /// Returns the result of the last export, once.
     pub(crate) fn take(&mut self) -> Option<Result<Exported, String>> {
         let result = self.work.as_ref()?.take()?;
         self.work = None;
@@ -183,7 +183,7 @@ impl Export {
         Some(result)
     }
 
-    /// Starts to render and write.
+    /// Starts to render and write the export.
     pub(crate) fn start(&mut self, subject: Subject, ctx: &egui::Context) -> Result<(), String> {
         self.agreed = None;
         let (shot, path) = (self.shot.within_limits(), PathBuf::from(self.path.trim()));
@@ -200,7 +200,7 @@ impl Export {
         self.run(ctx, move || worker::turn(&subject, light, (&reel, marks), path, &progress))
     }
 
-    /// Starts to render for the clipboard, as large as the window's picture.
+    /// Starts to render a picture for the clipboard, as large as the viewport.
     pub(crate) fn copy(
         &mut self,
         subject: Subject,
@@ -213,7 +213,7 @@ impl Export {
         self.run(ctx, move || worker::copy(&subject, &shot))
     }
 
-    /// Starts to render all views and looks that are kept into one picture.
+    /// Starts to render all kept views and looks into one picture.
     pub(crate) fn sheet(&mut self, subject: Subject, path: &Path, ctx: &egui::Context) -> Result<(), String> {
         if self.is_busy() {
             return Err(text::messages::EXPORT_RUNS.to_owned());

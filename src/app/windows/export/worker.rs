@@ -1,4 +1,4 @@
-//! What an export does on its own thread, on a renderer of its own: always full quality, whatever the preview
+//! Export worker: renders on its own thread with its own renderer, always at full quality, whatever the preview
 //! shows.
 
 use std::path::{Path, PathBuf};
@@ -17,52 +17,52 @@ use crate::gpu::{Context, GpuError, RenderOptions, Renderer, ShaderLibrary, Smal
 use crate::model::auto::Outline;
 use crate::model::{ImageSpec, KeptThing, Marks, PictureRecord, Record, Settings, VolumeRecord};
 
-/// Pixels of a picture on a sheet of what is kept: 4:3, as first looks are framed, and four beside each other fill a page
-/// at 300 dots per inch.
+/// Size of a picture on the sheet of kept views, in pixels: 4:3, as first looks are framed, and four side by side
+/// fill a page at 300 dots per inch.
 const TILE: [u32; 2] = [640, 480];
 
-/// What is to be exported.
+/// Scene to export: volume, settings and device.
 #[derive(Debug, Clone)]
 pub(in crate::app) struct Subject {
-    /// The window's device.
+    /// Window's device, of which the worker opens a sibling.
     pub context: Context,
-    /// The open volume.
+    /// Open volume with its derived data.
     pub dataset: Dataset,
-    /// The whole look.
+    /// Settings of the whole look.
     pub settings: Settings,
-    /// The first look at the volume.
+    /// First look at the volume.
     pub first: Settings,
-    /// What was opened.
+    /// Path or name that was opened.
     pub source: PathBuf,
-    /// The light that turns, if one is to.
+    /// Index of the selected light, for a turntable of the light.
     pub selected_light: usize,
-    /// Where the object ends, if that is known.
+    /// Outline of the visible object, if it is known.
     pub outline: Option<Arc<Outline>>,
 }
 
-/// What an export ended with.
+/// Outcome of an export that did not fail.
 #[derive(Debug)]
 pub(in crate::app) enum Exported {
-    /// A file was written.
+    /// The file that was written.
     File(PathBuf),
-    /// A picture for the clipboard.
+    /// The picture for the clipboard.
     Picture(egui::ColorImage),
-    /// The user did not want it any more.
+    /// The user has cancelled the export.
     Cancelled,
 }
 
-/// How far an export is, shared by the window and its worker.
+/// Progress of an export, shared by the window and its worker.
 #[derive(Debug, Default)]
 pub(crate) struct Progress {
-    /// Pictures or parts of one that are done.
+    /// Number of pictures or parts of one that are done.
     pub done: AtomicU32,
-    /// Pictures or parts of one that are to be made; 0 while nobody knows.
+    /// Number of pictures or parts in total; 0 while unknown.
     pub total: AtomicU32,
-    /// Nobody wants the rest.
+    /// True once the user has cancelled.
     pub cancelled: AtomicBool,
 }
 
-/// Why an export ended early.
+/// Reason for which an export ended early.
 #[derive(Debug)]
 enum Ended {
     Cancelled,
@@ -82,7 +82,7 @@ impl From<GpuError> for Ended {
 }
 
 impl Ended {
-    /// The result for the window: a cancelled export is no error.
+    /// Converts into the result for the window: a cancelled export is no error.
     fn result(self) -> Result<Exported, String> {
         match self {
             Self::Cancelled => Ok(Exported::Cancelled),
@@ -99,14 +99,14 @@ impl Progress {
     }
 }
 
-/// A renderer beside the window's device, so that the window stays alive.
+/// Renderer on a device beside the window's, so that the window stays responsive.
 pub(in crate::app) struct Worker {
     renderer: Renderer,
     adapter: String,
 }
 
 impl Worker {
-    /// A renderer for a subject.
+    /// Opens a sibling device and creates a renderer on it.
     pub(in crate::app) fn new(subject: &Subject) -> Result<Self, String> {
         may_panic(Place::Export);
         let beside = subject.context.sibling().map_err(|err| err.to_string())?;
@@ -114,7 +114,7 @@ impl Worker {
         Ok(Self { renderer, adapter: beside.description() })
     }
 
-    /// A picture of the subject with settings of one's own, as it is shown.
+    /// Renders a picture of the subject with other settings, tone mapped and with marks; RGBA, 8 bits.
     pub(in crate::app) fn render(
         &mut self,
         subject: &Subject,
@@ -131,12 +131,12 @@ impl Worker {
         }
     }
 
-    /// The pipelines of the worker's device.
+    /// Pipelines of the worker's device.
     pub(in crate::app) fn shaders(&self) -> ShaderLibrary {
         self.renderer.shaders()
     }
 
-    /// How bright a look of a volume is, on a small copy of it.
+    /// Measures the brightness of a look on a small copy of the volume.
     pub(in crate::app) fn measure(
         &mut self,
         whole: &Volume,
@@ -146,7 +146,7 @@ impl Worker {
         SmallLook::measure(&mut self.renderer, whole, small, settings).map_err(|err| err.to_string())
     }
 
-    /// How a picture was made, for a file in a folder.
+    /// Metadata record of a picture (settings, volume, adapter), for a file in a folder.
     fn record(
         &self,
         subject: &Subject,
@@ -161,7 +161,7 @@ impl Worker {
     }
 }
 
-/// Renders and writes one picture.
+/// Renders and writes one picture in bands.
 pub(crate) fn still(
     subject: &Subject,
     shot: &ImageSpec,
@@ -187,7 +187,7 @@ pub(crate) fn still(
         .map_or_else(Ended::result, |()| Ok(Exported::File(path)))
 }
 
-/// Renders and writes one turn, of a light or else of the camera.
+/// Renders and writes an animation, in which a light or else the camera turns once around.
 pub(crate) fn turn(
     subject: &Subject,
     light: Option<usize>,
@@ -212,7 +212,7 @@ pub(crate) fn turn(
     write().map_or_else(Ended::result, |()| Ok(Exported::File(path)))
 }
 
-/// Renders all views and looks that are kept, and writes them side by side into one picture.
+/// Renders all kept views and looks, and writes them side by side into one picture.
 pub(crate) fn sheet(subject: &Subject, path: PathBuf, progress: &Progress) -> Result<Exported, String> {
     let mut worker = Worker::new(subject)?;
     let shot = ImageSpec::new(TILE);
@@ -231,13 +231,13 @@ pub(crate) fn sheet(subject: &Subject, path: PathBuf, progress: &Progress) -> Re
         return ended.result();
     }
     let (size, shown) = sheet.finish();
-    // Whoever opens it has the look with all that is kept.
+    // The record contains the current look with all kept items.
     let record = worker.record(subject, &subject.settings, &ImageSpec::new(size), path.parent());
     export_png(size, &shown, false, Some(&record), &path).map_err(|err| err.to_string())?;
     Ok(Exported::File(path))
 }
 
-/// Settings that show something that is kept: views in the look that there is, looks as they were seen.
+/// Settings that show a kept item: a view in the current look, a look as it was kept.
 pub(in crate::app) fn shown_of(what: &KeptThing, settings: &Settings) -> Settings {
     match what {
         KeptThing::View(camera) => Settings { camera: camera.clone(), ..settings.clone() },
@@ -245,7 +245,7 @@ pub(in crate::app) fn shown_of(what: &KeptThing, settings: &Settings) -> Setting
     }
 }
 
-/// Renders for the clipboard.
+/// Renders a picture for the clipboard.
 pub(crate) fn copy(subject: &Subject, shot: &ImageSpec) -> Result<Exported, String> {
     let shown = Worker::new(subject)?.render(subject, &subject.settings, shot)?;
     let size = shot.size.map(|n| n as usize);

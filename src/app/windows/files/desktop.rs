@@ -1,10 +1,10 @@
-//! Whether the desktop has a dialog in which files are chosen.
+//! Detection of a file dialog of the desktop.
 //!
-//! Windows and macOS have one. Elsewhere it is that of the desktop portal, a service on the session bus, or a program that
-//! shows one; a desktop may have neither. A dialog that cannot be shown looks like one that was cancelled, so the desktop
-//! is asked before.
+//! Windows and macOS have one. Elsewhere it is that of the desktop portal, a service on the session bus, or a helper
+//! program; a desktop may have neither. A dialog that cannot be shown looks like a cancelled one, so the desktop is
+//! queried first.
 
-/// Whether there is such a dialog. Waits for an answer from the desktop, for seconds in the worst case.
+/// Returns true if the desktop has a file dialog. Blocks until the desktop answers, for seconds in the worst case.
 #[cfg(not(all(unix, not(target_os = "macos"))))]
 pub(crate) fn has_file_dialog() -> bool {
     true

@@ -1,4 +1,5 @@
-//! The desktop's file dialog, asked for on a thread of its own: what was chosen, or that there was none to choose in.
+//! File dialog of the desktop, run on a thread of its own; its result tells a chosen file from a dialog that failed
+//! to open.
 
 use std::io;
 use std::path::PathBuf;
@@ -14,45 +15,45 @@ use crate::app::worker::task::Work;
 use crate::data::load::endings;
 use crate::model::{EXPORTED, IMPORTED};
 
-/// The shortest that somebody needs to read a dialog and close it: what closes sooner was never open.
+/// Shortest time in which a user can read a dialog and close it: a dialog that closes sooner was never open.
 const SHORTEST: Duration = Duration::from_millis(400);
 
-/// The longest that a desktop takes to show a dialog. Until then, whoever asks for another one is asked to wait.
+/// Longest time that a desktop takes to show a dialog. Until then, a request for another one is refused.
 const SLOWEST: Duration = Duration::from_secs(2);
 
-/// What came of a dialog.
+/// Outcome of a file dialog.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Answer {
     Chosen(PathBuf),
     Cancelled,
-    /// The desktop has none, or could not show it.
+    /// The desktop has no file dialog, or could not show it.
     NoDialog,
 }
 
 type Choosing = Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>>;
 
-/// A dialog that was asked for, and has not been answered.
+/// File dialog that was requested and has not been answered.
 #[derive(Debug)]
 pub(super) struct Dialog {
     pub purpose: Purpose,
     asked: Instant,
-    /// This window has lost the keyboard since: to the dialog, unless the user went elsewhere.
+    /// True once the window has lost the keyboard focus: to the dialog, unless the user went elsewhere.
     was_seen: bool,
     work: Work<Answer>,
 }
 
 impl Dialog {
-    /// Asks the desktop for a dialog.
+    /// Requests a dialog from the desktop.
     ///
     /// # Errors
-    /// When there can be no thread for it.
+    /// If no thread can be started for it.
     pub(super) fn open(purpose: Purpose, frame: &eframe::Frame, ctx: &egui::Context) -> io::Result<Self> {
         let choosing = choosing(purpose, frame);
         let task = move || {
             if !desktop::has_file_dialog() {
                 return Answer::NoDialog;
             }
-            // From here, and not from when somebody asked: frames of the window may take long.
+            // Measured from here and not from the request, because frames of the window may take long.
             let shown = Instant::now();
             match pollster::block_on(choosing) {
                 Some(file) => Answer::Chosen(file.path().to_owned()),
@@ -64,12 +65,12 @@ impl Dialog {
         Ok(Self { purpose, asked: Instant::now(), was_seen: false, work })
     }
 
-    /// Whether it is on the screen, or may still come.
+    /// Returns true if the dialog is on screen, or may still appear.
     pub(super) fn may_be_open(&self) -> bool {
         self.was_seen || self.asked.elapsed() < SLOWEST
     }
 
-    /// Follows who has the keyboard. While the desktop decides what to show, letters are no commands: somebody may be
+    /// Observes the keyboard focus. While the desktop decides what to show, letters are no commands: the user may be
     /// typing a path already.
     pub(super) fn watch(&mut self, ctx: &egui::Context) {
         let is_left = |event: &egui::Event| matches!(event, egui::Event::WindowFocused(false));
@@ -79,7 +80,7 @@ impl Dialog {
         }
     }
 
-    /// What came of it, once.
+    /// Returns the outcome of the dialog, once.
     pub(super) fn answer(&self) -> Option<Answer> {
         let answer = self.work.take()?.unwrap_or_else(|panic| {
             log::warn!("the file dialog failed: {panic}");
@@ -90,18 +91,20 @@ impl Dialog {
 }
 
 impl Answer {
-    /// A dialog that fails late says that it was cancelled, too; but a dialog that somebody has cancelled was seen.
+    /// Turns a cancellation without loss of focus into a failure: a dialog that fails late also reports cancellation,
+    /// but a dialog that the user has cancelled took the focus.
     fn unless_unseen(self, was_seen: bool) -> Self {
         if self == Self::Cancelled && !was_seen { Self::NoDialog } else { self }
     }
 }
 
-/// What will be chosen in the dialog for a purpose. Some systems show it at once, others when it is waited for.
+/// Future of the file chosen in the dialog for a purpose. Some systems show the dialog at once, others when it is
+/// awaited.
 fn choosing(purpose: Purpose, frame: &eframe::Frame) -> Choosing {
     let dialog = rfd::AsyncFileDialog::new().set_title(purpose.question().title).set_parent(frame);
     match purpose {
         Purpose::OpenVolume | Purpose::VolumeOfLook => {
-            // Filters know what follows the last dot.
+            // Filters match the part after the last dot.
             let filters: Vec<&str> =
                 endings().into_iter().filter_map(|ending| ending.rsplit('.').next()).collect();
             let dialog = dialog.add_filter(text::files::VOLUMES, &filters);
@@ -147,7 +150,7 @@ fn choosing(purpose: Purpose, frame: &eframe::Frame) -> Choosing {
 mod tests {
     use super::*;
 
-    /// What comes of a dialog that answers so, in a window that has the keyboard or not.
+    /// Outcome of a dialog with a given answer, in a window that keeps the focus or loses it.
     fn answer_of(answer: &Answer, has_keyboard: bool) -> Answer {
         let ctx = egui::Context::default();
         let given = answer.clone();

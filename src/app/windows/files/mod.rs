@@ -1,4 +1,4 @@
-//! Files: dialogs on threads, the window for typing a path, dropped files, settings.
+//! File dialogs of the window: the desktop's on threads, a dialog for typed paths, dropped files, and settings files.
 
 mod desktop;
 mod dialog;
@@ -17,42 +17,42 @@ use crate::data::{ValueRange, ValueRanges, read_small};
 use crate::export::may_carry_record;
 use crate::model::{Record, Settings, TransferFunction, export, import};
 
-/// What a dialog is for.
+/// Purpose of a file dialog.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Purpose {
-    /// A volume to open.
+    /// Opens the file of a volume.
     OpenVolume,
-    /// A folder of slices to open.
+    /// Opens a folder of slices.
     OpenFolder,
-    /// The volume of a look that is kept until it is chosen.
+    /// Chooses the volume of a look that waits for it.
     VolumeOfLook,
-    /// Settings to apply.
+    /// Loads settings and applies them.
     LoadSettings,
-    /// A picture of surroundings to light by.
+    /// Loads an environment map to light by.
     Surroundings,
-    /// A transfer function of another program.
+    /// Imports a transfer function of another program.
     ImportTransfer,
-    /// Where to write the transfer function for another program.
+    /// Exports the transfer function for another program.
     ExportTransfer,
-    /// Settings to compare with.
+    /// Loads settings to compare with.
     CompareSettings,
-    /// Where to save settings.
+    /// Saves the settings to a file.
     SaveSettings,
-    /// Where to export a picture.
+    /// Chooses the file of an exported picture.
     ExportPicture,
-    /// Where to export a picture of all that is kept.
+    /// Exports one picture of all kept items.
     ExportKept,
-    /// Where to export a light volume, or a slice of it.
+    /// Exports a light volume, or a slice of it.
     ExportLight,
 }
 
 impl Purpose {
-    /// Whether a file is written at once, which the desktop's dialog asks about by itself.
+    /// Returns true if the file is written at once; the desktop's dialog asks before it replaces a file.
     fn writes(self) -> bool {
         matches!(self, Self::SaveSettings | Self::ExportTransfer | Self::ExportLight | Self::ExportKept)
     }
 
-    /// How the user is asked.
+    /// Title, hint and button of the dialog.
     fn question(self) -> Question {
         match self {
             Self::OpenVolume => text::files::OPEN_VOLUME,
@@ -71,34 +71,35 @@ impl Purpose {
     }
 }
 
-/// The typed-path window.
+/// State of the dialog for typed paths.
 #[derive(Debug)]
 struct Typed {
     purpose: Purpose,
     text: String,
     focus: bool,
-    /// There is such a file, and the user is being asked whether it may be replaced.
+    /// True while the user is asked whether an existing file may be replaced.
     asks: bool,
 }
 
-/// Dialogs that are open.
+/// File dialogs that are open.
 #[derive(Debug, Default)]
 pub(crate) struct Files {
     dialog: Option<Dialog>,
     typed: Option<Typed>,
-    /// A file was asked for while the desktop's dialog was open for another, and nobody has been told.
+    /// True if a request was refused because the desktop's dialog was open for another, and the user has not been
+    /// told.
     refused: bool,
 }
 
 impl Files {
-    /// Opens the desktop's file dialog; without one, the window for typing a path.
+    /// Opens the desktop's file dialog; without one, the dialog for a typed path.
     pub(crate) fn ask(&mut self, purpose: Purpose, frame: &eframe::Frame, ctx: &egui::Context) {
         if let Some(dialog) = &self.dialog {
             if dialog.may_be_open() {
                 self.refused = true;
                 ctx.request_repaint();
             } else {
-                // Whatever became of that one, nobody has seen it.
+                // The earlier dialog has not appeared, whatever became of it.
                 self.type_path(purpose);
             }
             return;
@@ -112,19 +113,19 @@ impl Files {
         }
     }
 
-    /// Opens the window for typing a path.
+    /// Opens the dialog for a typed path.
     pub(crate) fn type_path(&mut self, purpose: Purpose) {
         let before = self.typed.take().filter(|typed| typed.purpose == purpose);
         let text = before.map(|typed| typed.text).unwrap_or_default();
         self.typed = Some(Typed { purpose, text, focus: true, asks: false });
     }
 
-    /// Title of the window for typing a path, if it is open.
+    /// Title of the dialog for a typed path, if it is open.
     pub(crate) fn path_window(&self) -> Option<&'static str> {
         self.typed.as_ref().map(|typed| typed.purpose.question().title)
     }
 
-    /// What the user chose, once. To be called in each frame.
+    /// Returns the file chosen in the desktop's dialog, once. Called in each frame.
     pub(crate) fn take(&mut self, ctx: &egui::Context) -> Option<(Purpose, PathBuf)> {
         let dialog = self.dialog.as_mut()?;
         dialog.watch(ctx);
@@ -134,19 +135,19 @@ impl Files {
         match answer {
             Answer::Chosen(path) => return Some((purpose, path)),
             Answer::Cancelled => {}
-            // Whoever types a path already has given up on that dialog.
+            // A user who is typing a path has given up on the dialog.
             Answer::NoDialog if self.typed.is_some() => {}
             Answer::NoDialog => self.type_path(purpose),
         }
         None
     }
 
-    /// Whether a file was asked for while the desktop's dialog was open for another, once.
+    /// Returns true, once, if a request was refused because the desktop's dialog was open for another.
     pub(crate) fn take_refusal(&mut self) -> bool {
         std::mem::take(&mut self.refused)
     }
 
-    /// Shows the window for typing a path, if it is open. Gives what was typed.
+    /// Shows the dialog for a typed path, if it is open, and returns the path that was entered.
     pub(crate) fn ui(&mut self, ctx: &egui::Context) -> Option<(Purpose, PathBuf)> {
         let typed = self.typed.as_mut()?;
         shortcuts::reserve_letters(ctx);
@@ -167,7 +168,7 @@ impl Files {
                 accepted = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
             });
             let path = PathBuf::from(typed.text.trim());
-            // Another name was typed meanwhile.
+            // The name may have been edited meanwhile.
             typed.asks &= path.is_file();
             if typed.asks {
                 ui.label(text::files::is_there_already(&path));
@@ -177,7 +178,7 @@ impl Files {
                 let pressed =
                     ui.add_enabled(!typed.text.trim().is_empty(), egui::Button::new(verb)).clicked();
                 cancelled = ui.button(text::common::CANCEL).clicked();
-                // Enter alone replaces nothing.
+                // Enter alone does not replace a file.
                 accepted = pressed || accepted && !typed.asks;
                 if accepted && !typed.asks && typed.purpose.writes() && path.is_file() {
                     (typed.asks, accepted) = (true, false);
@@ -194,29 +195,29 @@ impl Files {
     }
 }
 
-/// What was dropped on the window.
+/// Paths of the files dropped on the window in this frame.
 pub(crate) fn dropped(ctx: &egui::Context) -> Vec<PathBuf> {
     ctx.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect())
 }
 
-/// Whether a picture carries a look. Others of that kind are slices.
+/// Returns true if a picture file carries a look in its metadata; PNG files without one are slices.
 pub(crate) fn carries_look(path: &Path) -> bool {
     may_carry_record(path) && crate::export::read_record(path).is_ok_and(|record| record.is_some())
 }
 
-/// Whether a file that may hold a look is a volume: a folder, or a picture of a kind that is read, without a look.
+/// Returns true if a path that may hold a look is a volume: a folder, or a PNG without a look.
 pub(crate) fn is_volume(path: &Path) -> bool {
     let is_readable = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
     path.is_dir() || is_readable && crate::export::read_record(path).is_ok_and(|record| record.is_none())
 }
 
-/// Writes a file whole or not at all; what was there stays beside it, as `.bak`.
+/// Writes a file atomically; the previous one is kept beside it as `.bak`.
 pub(crate) fn write_with_backup(path: &Path, contents: &[u8]) -> Result<(), String> {
     crate::export::keep_backup(path).map_err(|err| err.to_string())?;
     crate::export::write_atomically(path, contents).map_err(|err| err.to_string())
 }
 
-/// Reads what a session, a preset or an exported picture says.
+/// Reads the record of a session file, a preset or an exported picture.
 pub(crate) fn load_record(path: &Path) -> Result<Record, String> {
     let record = if may_carry_record(path) {
         let found = crate::export::read_record(path).map_err(|err| err.to_string())?;
@@ -227,26 +228,25 @@ pub(crate) fn load_record(path: &Path) -> Result<Record, String> {
     Record::from_bytes(&record).map_err(|err| text::files::settings_not_used(path, err))
 }
 
-/// The values over which transfer functions of other programs are laid, on the way in and on the way out: those that the
-/// plot shows.
+/// Value range onto which transfer functions of other programs are mapped at import and export: the shown range.
 pub(crate) fn exchanged_range(settings: &Settings, ranges: &ValueRanges) -> ValueRange {
     settings.shown_range(ranges)
 }
 
-/// Reads a transfer function of another program, laid over these values where it names none.
+/// Imports a transfer function of another program, mapped to a value range unless the file names one.
 pub(crate) fn import_transfer(path: &Path, range: ValueRange) -> Result<TransferFunction, String> {
     let bytes = read_small(path).map_err(|err| text::files::transfer_not_read(path, err))?;
     import(path, &bytes, range).map_err(|err| text::files::transfer_not_used(path, err))
 }
 
-/// Writes the transfer function of a look for another program, for a volume with these values.
+/// Exports the transfer function of a look for another program, for a volume with these values.
 pub(crate) fn export_transfer(path: &Path, settings: &Settings, ranges: &ValueRanges) -> Result<(), String> {
     let range = exchanged_range(settings, ranges);
     let bytes = export(path, &settings.transfer, range).map_err(|err| err.to_string())?;
     crate::export::write_atomically(path, &bytes).map_err(|err| err.to_string())
 }
 
-/// Whether a file holds a look and not a volume, by its name.
+/// Returns true if a file name is that of a look rather than a volume: JSON, or a picture that may carry a record.
 pub(crate) fn is_record(path: &Path) -> bool {
     may_carry_record(path) || path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
 }
@@ -274,7 +274,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let (all, robust) = (ValueRange::new(-1000.0, 5000.0), ValueRange::new(0.0, 100.0));
         let ranges = ValueRanges { all, robust };
-        // Beyond the values that matter, which widens what is shown.
+        // Beyond the robust range, which widens the shown range.
         let points = [(-20.0, 0.0), (60.0, 0.3), (150.0, 0.9)];
         let points = points.map(|(value, opacity)| ControlPoint::new(value, [1.0; 3], opacity)).to_vec();
         let transfer =

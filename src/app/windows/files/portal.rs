@@ -1,21 +1,21 @@
-//! File dialog of the desktop portal, on systems where a desktop may have none.
+//! File dialog of the XDG desktop portal, on systems whose desktop may have none.
 
 use std::ffi::OsStr;
 use std::time::Duration;
 
 use zbus::connection::Builder;
 
-/// The longest that is waited for an answer, in which the bus may have to start the portal first: later nobody knows
-/// any more what was asked for.
+/// Longest wait for an answer, during which the bus may have to start the portal first; after more, users forget
+/// their request.
 const LONGEST_ANSWER: Duration = Duration::from_secs(4);
 
-/// Method of the bus by which a property is read.
+/// Bus method that reads a property.
 const METHOD: &str = "Get";
 
-/// Program that shows a dialog where no portal does.
+/// Helper program that shows a dialog if there is no portal.
 const SUBSTITUTE: &str = "zenity";
 
-/// Whether there is such a dialog. Waits for an answer from the desktop, for seconds in the worst case.
+/// Returns true if the desktop has a file dialog. Blocks until the desktop answers, for seconds in the worst case.
 pub(crate) fn has_file_dialog() -> bool {
     let asked = Builder::session().and_then(|bus| pollster::block_on(ask_portal(bus)));
     match asked {
@@ -27,7 +27,7 @@ pub(crate) fn has_file_dialog() -> bool {
     }
 }
 
-/// Asks the portal on a bus for its file chooser, which only a portal has that can show one (XDG Desktop Portal,
+/// Queries the portal on a bus for its file chooser, which only a portal that can show one has (XDG Desktop Portal,
 /// `org.freedesktop.portal.FileChooser`).
 async fn ask_portal(bus: Builder<'_>) -> zbus::Result<()> {
     let bus = bus.method_timeout(LONGEST_ANSWER).build().await?;
@@ -41,7 +41,7 @@ async fn ask_portal(bus: Builder<'_>) -> zbus::Result<()> {
     asked.await.map(drop)
 }
 
-/// Whether a program is in one of the folders of a search path.
+/// Returns true if a program is in one of the folders of a search path.
 fn is_in(path: &OsStr, program: &str) -> bool {
     std::env::split_paths(path).any(|folder| folder.join(program).is_file())
 }

@@ -1,41 +1,42 @@
-//! Commands and settings that words find: by their names, or by what else they are called.
+//! Search for commands and settings by words: by their names, search words and synonyms.
 
 use super::synonyms::{self, Synonym};
 use crate::app::common::commands::{self, Command};
 use crate::app::text;
 use crate::model::SceneAxis;
 
-/// Letters from which on a word is also sought within others, as light in spotlight: one or two stand in most words.
+/// Length from which on a word is also matched inside others, in characters ("light" in "spotlight"): one or two
+/// letters occur in most words.
 const WITHIN: usize = 3;
 
-/// What the names and the rows depend on.
+/// State of the window that decides the names and rows that can be found.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Subject {
-    /// The axis of the scene that points up, which some names say.
+    /// Scene axis that points up, which some names contain.
     pub up: SceneAxis,
-    /// The volume has labels.
+    /// True if the volume has labels.
     pub has_labels: bool,
 }
 
-/// Something that was found.
+/// Command or setting that was found.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Finding {
     pub command: Command,
-    /// What is said of it beside its name; empty where that is enough.
+    /// Remark beside its name; empty if the name is enough.
     pub note: &'static str,
 }
 
-/// What words have found.
+/// Result of a search by words.
 #[derive(Debug, Default)]
 pub(super) struct Findings {
-    /// What the program does not have, if that was sought, in a sentence.
+    /// Sentence that says that the program lacks the feature, if one was searched for that it does not have.
     pub missing: Option<&'static str>,
-    /// The nearest first.
+    /// Matching commands, best match first.
     pub found: Vec<Finding>,
 }
 
-/// Finds the commands whose names, or what else they are found by, hold all the words of a text: first those that begin
-/// with it, then those whose names hold all of it, then those that are meant by it.
+/// Finds the commands that match all words of a text by name, search words or synonyms: first those whose names begin
+/// with it, then those whose names contain all words, then those reached through synonyms.
 pub(super) fn matching(text: &str, Subject { up, has_labels }: Subject) -> Findings {
     let text = text.to_lowercase();
     let wanted: Vec<&str> = words(&text).collect();
@@ -56,7 +57,7 @@ pub(super) fn matching(text: &str, Subject { up, has_labels }: Subject) -> Findi
         let is_found = wanted.iter().all(|word| is_said(word, &name) || is_said(word, &others));
         let is_named = wanted.iter().all(|word| is_said(word, &name));
         let begins = name.join(" ").starts_with(&beginning);
-        // By its place among what the words mean.
+        // Ordered by the position among the targets of the synonyms.
         let place = |synonym: &Synonym| synonym.targets.iter().position(|target| *target == command);
         let meaning = meant.iter().enumerate().find_map(|(at, synonym)| Some((at, place(synonym)?)));
         let note = meaning.map_or("", |(at, _)| meant[at].sought.note);
@@ -76,12 +77,12 @@ pub(super) fn matching(text: &str, Subject { up, has_labels }: Subject) -> Findi
     }
 }
 
-/// What stands in a text between characters that are neither letters nor digits.
+/// Splits a text into words, at characters that are neither letters nor digits.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty())
 }
 
-/// Whether one of several words begins with another one, or holds it if that is long enough.
+/// Returns true if one of several words begins with a word, or contains it if it is long enough.
 fn is_said(word: &str, among: &[&str]) -> bool {
     let is_long = word.chars().count() >= WITHIN;
     among.iter().any(|said| said.starts_with(word) || is_long && said.contains(word))
@@ -94,7 +95,7 @@ mod tests {
     use crate::data::load::{Aspect, Dimension};
     use crate::model::{ObjectTurn, StandardView};
 
-    /// Commands that words find, where the volume has no labels.
+    /// Commands that a text finds, for a volume without labels.
     fn found(text: &str, up: SceneAxis) -> Vec<Command> {
         let findings = matching(text, Subject { up, has_labels: false });
         findings.found.into_iter().map(|finding| finding.command).collect()
@@ -180,7 +181,7 @@ mod tests {
         assert_eq!(above, [Command::LookFrom(StandardView::PlusZ)], "names say what is up");
     }
 
-    /// Each with what comes first, and whether it is said that the program does not have it.
+    /// Pairs of search words, their first result, and whether the feature is reported as missing.
     #[test]
     fn what_people_call_things_leads_to_what_is_nearest() {
         let channel = Aspect::Of(Dimension::Channel);

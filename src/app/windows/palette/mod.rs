@@ -1,4 +1,4 @@
-//! Finding a command or a setting by its name, or by what else people call it.
+//! Command palette: finds a command or a setting by its name or by a synonym.
 
 mod matching;
 mod synonyms;
@@ -12,10 +12,10 @@ use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text;
 use crate::model::SceneAxis;
 
-/// Lines that are shown at once.
+/// Number of lines that are shown at once.
 const LINES: usize = 12;
 
-/// The window with the search field.
+/// State of the window with the search field.
 #[derive(Debug, Default)]
 pub(crate) struct Palette {
     open: bool,
@@ -24,13 +24,13 @@ pub(crate) struct Palette {
 }
 
 impl Palette {
-    /// Opens it, empty.
+    /// Opens the palette with an empty search field.
     pub(crate) fn open(&mut self) {
         *self = Self { open: true, ..Self::default() };
     }
 
-    /// Shows it, and adds the command that was chosen. Some names say which axis of the scene points up. Presets for another
-    /// kind of data than that of the volume are dim, and rows about labels are there where it has some.
+    /// Shows the palette, and adds the chosen command. Some names state which axis of the scene points up. Presets
+    /// for another kind of data than that of the volume are dimmed, and rows about labels appear only if it has some.
     pub(crate) fn ui(
         &mut self,
         ctx: &egui::Context,

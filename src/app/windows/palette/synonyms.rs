@@ -1,4 +1,4 @@
-//! Table of what people call things that are called otherwise here, and of what is not here, with what is nearest to it.
+//! Synonyms of commands and settings, and features that the program lacks, with the commands nearest to them.
 
 use crate::app::common::commands::Command;
 use crate::app::common::places::PLACES;
@@ -8,24 +8,24 @@ use crate::data::KindName;
 use crate::data::load::{Aspect, Dimension, Thinning};
 use crate::model::ObjectTurn;
 
-/// Something that is sought, and what leads there.
+/// Search words with the commands that they lead to.
 #[derive(Debug)]
 pub(super) struct Synonym {
-    /// The words, and what is said to them.
+    /// Search words, and the remark shown for them.
     pub sought: Sought,
-    /// Whether the program has it; else what is said is that it does not.
+    /// True if the program has the feature; otherwise the remark says that it is missing.
     pub is_there: bool,
-    /// What is meant, or else what is nearest to it: the nearest first.
+    /// Commands that are meant, or else the nearest ones, best first.
     pub targets: Vec<Command>,
 }
 
-/// What leads to a row of a panel, or to a section as a whole.
+/// Command that reveals a row of a panel, or a section as a whole.
 fn row(section: &str, row: Option<&str>) -> Option<Command> {
     let place = PLACES.iter().map(|(place, _)| *place);
     place.into_iter().find(|place| place.section == section && place.row == row).map(Command::Reveal)
 }
 
-/// The table, for a volume that has labels or not.
+/// Table of synonyms, for a volume with or without labels.
 pub(super) fn all(has_labels: bool) -> Vec<Synonym> {
     let here = |sought, targets: Vec<Option<Command>>| Synonym {
         sought,
@@ -114,7 +114,7 @@ mod tests {
         for has_labels in [false, true] {
             for Synonym { sought, is_there, targets } in all(has_labels) {
                 assert!(targets.iter().all(|target| commands.contains(target)), "{sought:?}: {targets:?}");
-                // Only of a stereo picture there is nothing near.
+                // Stereo pictures are the only feature without a nearest command.
                 let is_led = !targets.is_empty() || sought == palette::NO_STEREO;
                 assert!(is_led && (is_there || !sought.note.is_empty()), "{sought:?}");
                 assert!(
@@ -125,7 +125,7 @@ mod tests {
         }
     }
 
-    /// A row that is not in the panels would be left out without a word.
+    /// Guards against rows that no panel has, which would be left out silently.
     #[test]
     fn rows_are_those_of_the_panels() {
         let source = include_str!("synonyms.rs").split("#[cfg(test)]").next().unwrap_or_default();

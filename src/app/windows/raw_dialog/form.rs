@@ -1,4 +1,4 @@
-//! The numbers that say how a file is stored.
+//! Form of the raw import dialog: dimensions, voxel type, byte order, header size and spacing of a file.
 
 use std::cmp::Ordering;
 
@@ -11,19 +11,19 @@ use crate::data::VoxelType;
 use crate::data::load::raw::Proposal;
 use crate::data::load::{Endian, RawGuess, RawLayout};
 
-/// The longest edge that can be typed.
+/// Longest edge that can be typed, in voxels.
 const LONGEST: usize = 65_536;
 
-/// The numbers, and what is known of the file's length.
+/// Values of the form, and the known length of the file.
 #[derive(Debug)]
 pub(super) struct Form {
     guess: RawGuess,
     layout: RawLayout,
-    /// Distances between voxels, in a unit; kept while the unit is not known.
+    /// Spacing of voxels in `unit`; kept while the unit is unknown.
     spacing: [f64; 3],
     unit: Unit,
     length: Option<Length>,
-    /// Whether the user has changed a number: then none is changed by itself.
+    /// True once the user has edited a value; then none is changed automatically.
     is_touched: bool,
 }
 
@@ -44,13 +44,13 @@ impl Form {
         self.guess.is_gzip
     }
 
-    /// The numbers as they are now.
+    /// Layout of the file as currently entered.
     pub(super) fn layout(&self) -> RawLayout {
         let spacing_mm = self.unit.mm().map(|mm| self.spacing.map(|spacing| spacing * mm));
         RawLayout { spacing_mm, ..self.layout }
     }
 
-    /// What was found of the file.
+    /// Takes over the length of the file and, unless the user has edited a value, the first proposal.
     pub(super) fn found(&mut self, length: Option<Length>, first: Option<&Proposal>) {
         self.length = length.or(self.length);
         if let Some(first) = first.filter(|_| !self.is_touched) {
@@ -58,18 +58,18 @@ impl Form {
         }
     }
 
-    /// Takes over a proposal; distances stay.
+    /// Takes over a proposal; the spacing stays.
     pub(super) fn fill(&mut self, layout: &RawLayout) {
         self.layout = *layout;
         self.is_touched = true;
     }
 
-    /// Whether the numbers are those of a proposal.
+    /// Returns true if the form matches a proposal.
     pub(super) fn is_of(&self, layout: &RawLayout) -> bool {
         self.layout == *layout
     }
 
-    /// Shows the numbers; gives the first of them.
+    /// Shows the fields, and returns the first of them.
     pub(super) fn fields(&mut self, ui: &mut Ui) -> Response {
         let before = self.layout;
         let grid = egui::Grid::new("raw layout").num_columns(2).spacing([12.0, 5.0]).show(ui, |ui| {
@@ -157,7 +157,7 @@ impl Form {
         });
     }
 
-    /// Says whether the file is as long as that, and what helps. Whether it is, or may be.
+    /// Shows whether the file's length matches, with remedies; returns true if it does, or may.
     pub(super) fn length(&mut self, ui: &mut Ui) -> bool {
         let Some(Length { bytes: found, is_exact }) = self.length else {
             ui.weak(text::raw::COMPRESSED);
@@ -175,11 +175,11 @@ impl Form {
             Ordering::Greater => ui.colored_label(wrong, text::raw::shorter(found, expected)),
         };
         ui.horizontal_wrapped(|ui| self.remedies(ui, found, expected));
-        // What the end of a compressed file says may be wrong.
+        // The length in the trailer of a compressed file may be wrong.
         expected == found || !is_exact
     }
 
-    /// Buttons that make the numbers fit.
+    /// Shows buttons that make the values match the file's length.
     fn remedies(&mut self, ui: &mut Ui, found: u64, expected: u64) {
         let before = self.layout;
         if expected < found && ui.small_button(text::raw::ARE_HEADER).clicked() {

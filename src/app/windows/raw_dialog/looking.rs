@@ -1,4 +1,4 @@
-//! What is found of the file on another thread: how it may be stored.
+//! Background analysis of a raw file: its length, and proposals for its layout.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use crate::app::text::raw::Length;
 use crate::app::worker::task::Work;
 use crate::data::load::raw::{Proposal, RawBytes, Said, proposals};
 
-/// The bytes of the file, which tasks take turns to read; the first of them opens it.
+/// Bytes of the file, shared by tasks that read in turn; the first one opens it.
 #[derive(Debug, Clone)]
 pub(super) struct SharedBytes {
     path: PathBuf,
@@ -20,9 +20,9 @@ pub(super) struct SharedBytes {
 }
 
 impl SharedBytes {
-    /// Does something with the bytes. To be called by tasks: it waits for others, and for the disk.
+    /// Runs a function on the bytes. Called by tasks only: it waits for other tasks and for the disk.
     pub(super) fn read<T>(&self, task: impl FnOnce(&mut RawBytes) -> io::Result<T>) -> io::Result<T> {
-        // A task that panicked has left nothing half done: bytes are only read.
+        // After a panic the bytes are still consistent: they are only read.
         let mut held = self.bytes.lock().unwrap_or_else(PoisonError::into_inner);
         let bytes = match held.take() {
             Some(bytes) => bytes,
@@ -32,7 +32,7 @@ impl SharedBytes {
     }
 }
 
-/// Tells a task to stop when it is dropped.
+/// Cancel flag that is set when this is dropped.
 #[derive(Debug, Default)]
 pub(super) struct Stopper(pub(super) Arc<AtomicBool>);
 
@@ -42,14 +42,14 @@ impl Drop for Stopper {
     }
 }
 
-/// What was found.
+/// Result of the analysis: length and layout proposals.
 #[derive(Debug)]
 struct Found {
     length: Length,
     proposals: Vec<Proposal>,
 }
 
-/// The search for ways of storing the file.
+/// Analysis of a file in progress, and its result.
 #[derive(Debug)]
 pub(super) struct Looking {
     bytes: SharedBytes,
@@ -77,7 +77,7 @@ impl Looking {
         Self { bytes, work: work.ok(), found: None, failure, _stopper: stopper }
     }
 
-    /// Takes in what was found; whether there is something new.
+    /// Takes the result of the analysis; returns true if it is new.
     pub(super) fn take(&mut self) -> bool {
         let Some(result) = self.work.as_ref().and_then(Work::take) else { return false };
         self.work = None;
@@ -98,7 +98,7 @@ impl Looking {
     }
 
     pub(super) fn proposals(&self) -> &[Proposal] {
-        // More than these nobody reads.
+        // Users do not read more than these.
         self.found.as_ref().map_or(&[], |found| &found.proposals[..found.proposals.len().min(5)])
     }
 

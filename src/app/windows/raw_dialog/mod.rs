@@ -1,5 +1,5 @@
-//! The window that asks how a file of bare voxels is stored: numbers on the left, what the file looks like with them on
-//! the right, and below the numbers the ways that are likeliest by what its bytes are like.
+//! Raw import dialog: asks how a file of bare voxels is stored. Numbers on the left, a preview of the file with these
+//! on the right, and below the numbers the layouts that its bytes make most likely.
 
 mod form;
 mod looking;
@@ -17,29 +17,29 @@ use crate::app::text;
 use crate::data::load::raw::Proposal;
 use crate::data::load::{RawGuess, RawLayout};
 
-/// Width of the numbers and of the proposals, in points.
+/// Width of the numbers and proposals, in points.
 const NUMBERS_WIDTH: f32 = 356.0;
 
-/// Height of all of it.
+/// Height of the dialog's contents, in points.
 const HEIGHT: f32 = 640.0;
 
-/// Height of a window's title and margins.
+/// Height of a window's title and margins, in points.
 const TITLE_HEIGHT: f32 = 46.0;
 
-/// What the user said.
+/// Layout of a raw file as the user has described it.
 #[derive(Debug)]
 pub(crate) struct Described {
-    /// The file.
+    /// Path of the described file.
     pub path: PathBuf,
-    /// How it is stored.
+    /// Layout of the file's voxels.
     pub layout: RawLayout,
-    /// Where to write a header that says so, if the user asks for it.
+    /// Path of a header file to write with this layout, if the user wants one.
     pub header: Option<PathBuf>,
-    /// Whether the file is compressed.
+    /// True if the file is gzip-compressed.
     pub is_gzip: bool,
 }
 
-/// A file that is asked about.
+/// File that the dialog asks about.
 #[derive(Debug)]
 struct Asked {
     path: PathBuf,
@@ -47,25 +47,25 @@ struct Asked {
     form: Form,
     looking: Looking,
     pictures: Pictures,
-    /// Where a header would be written.
+    /// Path where a header would be written.
     header: PathBuf,
-    /// Whether one is there already.
+    /// True if that header exists already.
     has_header: bool,
     writes_header: bool,
-    /// The first field takes the keys, once.
+    /// True until the first field has taken the keyboard focus.
     takes_focus: bool,
-    /// That field, as soon as it has been shown.
+    /// Id of the first field, once it has been shown.
     first: Option<egui::Id>,
 }
 
-/// State of the window.
+/// State of the dialog; empty while it is closed.
 #[derive(Debug, Default)]
 pub(crate) struct RawDialog {
     asked: Option<Asked>,
 }
 
 impl RawDialog {
-    /// Asks about a file; `why` says what is not known.
+    /// Opens the dialog for a file; `why` says what is not known of it.
     pub(crate) fn ask(&mut self, path: &Path, why: String, guess: RawGuess, ctx: &egui::Context) {
         let header = header_of(path);
         self.asked = Some(Asked {
@@ -82,12 +82,12 @@ impl RawDialog {
         });
     }
 
-    /// Closes the window: something else is being opened.
+    /// Closes the dialog, because something else is being opened.
     pub(crate) fn close(&mut self) {
         self.asked = None;
     }
 
-    /// Shows the window, if it is open. Gives what the user said, once.
+    /// Shows the dialog, if it is open, and returns the user's description once.
     pub(crate) fn ui(&mut self, ctx: &egui::Context) -> Option<Described> {
         let asked = self.asked.as_mut()?;
         asked.take_proposals();
@@ -95,7 +95,7 @@ impl RawDialog {
         let mut open = true;
         let mut answer = None;
         let window = egui::Window::new(text::raw::TITLE).open(&mut open).collapsible(false).resizable(false);
-        // In a small window with a scroll bar, so that its buttons can be reached.
+        // In a low window it scrolls, so that its buttons can be reached.
         let room = frame::room(ctx);
         let is_narrow = room.height() < HEIGHT;
         let window = window.constrain_to(room).vscroll(is_narrow);
@@ -119,7 +119,7 @@ impl RawDialog {
                 });
             });
         });
-        // A list of types that is open is closed first.
+        // Escape closes an open drop-down list first.
         let is_free = !egui::Popup::is_any_open(ctx);
         if is_free && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) || !open {
             answer = Some(Answer::Cancel);
@@ -134,7 +134,7 @@ impl RawDialog {
     }
 }
 
-/// What the user answered.
+/// Answer of the user in this frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Answer {
     Open,
@@ -142,7 +142,7 @@ enum Answer {
 }
 
 impl Asked {
-    /// Takes in what was found of the file. Numbers that nobody has touched become those that are likeliest.
+    /// Takes the result of the analysis. Values that the user has not edited become those of the best proposal.
     fn take_proposals(&mut self) {
         if !self.looking.take() {
             return;
@@ -150,9 +150,9 @@ impl Asked {
         self.form.found(self.looking.length(), self.looking.proposals().first());
     }
 
-    /// The numbers, whether they fit, what is proposed, and the buttons.
+    /// Shows the numbers, whether they match the file, the proposals and the buttons.
     fn left(&mut self, ui: &mut egui::Ui) -> Option<Answer> {
-        // Before the field is there: then all of its number is selected, and typing replaces it.
+        // Requested before the field is shown: then all of its number is selected, and typing replaces it.
         if let Some(first) = self.first.filter(|_| self.takes_focus && !self.looking.is_busy()) {
             ui.memory_mut(|memory| memory.request_focus(first));
             self.takes_focus = false;
@@ -170,7 +170,8 @@ impl Asked {
         let mut answer = None;
         ui.horizontal(|ui| {
             let button = ui.add_enabled(fits, egui::Button::new(text::raw::OPEN));
-            // Enter opens, unless it presses another button. A number that was being typed is taken over by then.
+            // Enter opens unless another button has the focus. A number that was being typed has been committed by
+            // then.
             let is_free = ui.memory(egui::Memory::focused).is_none() && !egui::Popup::is_any_open(ui.ctx());
             let enter = fits && is_free && ui.input(|input| input.key_pressed(Key::Enter));
             if button.on_hover_text(text::raw::OPEN_TIP).clicked() || enter {
@@ -183,7 +184,7 @@ impl Asked {
         answer
     }
 
-    /// The likeliest ways of storing the file, which fill in the numbers.
+    /// Shows the most likely layouts, each of which fills in the numbers when clicked.
     fn proposals(&mut self, ui: &mut egui::Ui) {
         ui.strong(text::raw::PROPOSALS);
         if self.looking.is_busy() {
@@ -223,7 +224,7 @@ impl Asked {
     }
 }
 
-/// A row of the list: a way of storing, and why.
+/// Shows a row of the list: a layout, and the evidence for it.
 fn row(ui: &mut egui::Ui, is_chosen: bool, line: &str, why: &str) -> egui::Response {
     let style = ui.style();
     let color = if is_chosen { style.visuals.selection.stroke.color } else { style.visuals.text_color() };
@@ -243,7 +244,7 @@ fn row(ui: &mut egui::Ui, is_chosen: bool, line: &str, why: &str) -> egui::Respo
     response
 }
 
-/// The header beside a data file: `scan.raw.gz` has `scan.nhdr`.
+/// Path of the header beside a data file: `scan.raw.gz` has `scan.nhdr`.
 fn header_of(path: &Path) -> PathBuf {
     let stem = |path: &Path| path.file_stem().map(PathBuf::from).unwrap_or_default();
     let mut name = stem(path);

@@ -1,4 +1,5 @@
-//! The middle slices of the file, as the numbers would have it; they follow while numbers are changed.
+//! Preview of the raw import dialog: the middle slices of the file with the current numbers, updated while they
+//! change.
 
 use std::io;
 use std::sync::Arc;
@@ -17,28 +18,28 @@ use crate::data::load::raw::{MiddleSlices, Slice, middle_slices};
 /// Longest edge of a slice, in points.
 const EDGE: f32 = 184.0;
 
-/// Voxels that the file does not have.
+/// Colour of voxels that lie beyond the end of the file.
 const MISSING: Color32 = Color32::from_rgb(0x70, 0x2c, 0x28);
 
-/// A slice on screen.
+/// Slice on screen, as a texture.
 struct Picture {
     texture: TextureHandle,
-    /// Of the whole slice, in voxel edges or in millimetres.
+    /// Size of the whole slice, in voxels.
     size: Vec2,
 }
 
-/// Slices that are being read.
+/// Slices being read on a background thread.
 struct Reading {
     layout: RawLayout,
     work: Work<io::Result<Option<MiddleSlices>>>,
     _stopper: Stopper,
 }
 
-/// State of the slices.
+/// State of the preview between frames.
 #[derive(Default)]
 pub(super) struct Pictures {
     reading: Option<Reading>,
-    /// What is shown.
+    /// Layout of the shown slices, and their textures.
     shown: Option<(RawLayout, [Picture; 3])>,
     failure: Option<String>,
 }
@@ -49,13 +50,13 @@ impl std::fmt::Debug for Pictures {
     }
 }
 
-/// Whether the same bytes are shown; distances only stretch them.
+/// Returns true if two layouts show the same bytes; spacing only stretches them.
 fn is_same(a: &RawLayout, b: &RawLayout) -> bool {
     RawLayout { spacing_mm: None, ..*a } == RawLayout { spacing_mm: None, ..*b }
 }
 
 impl Pictures {
-    /// Shows the slices of a layout, or of the one before until they are read.
+    /// Shows the slices of a layout, or the previous ones until they are read.
     pub(super) fn ui(&mut self, ui: &mut Ui, looking: &Looking, layout: &RawLayout) {
         self.take(ui.ctx());
         self.ask(ui.ctx(), looking, layout);
@@ -97,7 +98,7 @@ impl Pictures {
         });
     }
 
-    /// Takes in slices that have been read.
+    /// Takes slices that have been read.
     fn take(&mut self, ctx: &egui::Context) {
         let Some(result) = self.reading.as_ref().and_then(|reading| reading.work.take()) else { return };
         let Some(Reading { layout, .. }) = self.reading.take() else { return };
@@ -118,13 +119,13 @@ impl Pictures {
         }
     }
 
-    /// Starts to read slices that are not shown yet; what is being read for other numbers is given up.
+    /// Starts to read slices that are not shown yet; a read for other numbers is cancelled.
     fn ask(&mut self, ctx: &egui::Context, looking: &Looking, layout: &RawLayout) {
         if self.shown.as_ref().is_some_and(|(shown, _)| is_same(shown, layout)) {
             self.reading = None;
             return;
         }
-        // What cannot be read is not tried again and again.
+        // A read that failed is not retried.
         if self.failure.is_some()
             || self.reading.as_ref().is_some_and(|reading| is_same(&reading.layout, layout))
         {
@@ -142,7 +143,7 @@ impl Pictures {
     }
 }
 
-/// Greys of a slice, its second axis upwards.
+/// Renders a slice in greys, its second axis upwards.
 fn image(found: &MiddleSlices, which: usize) -> ColorImage {
     let Slice { size: [width, height], values } = &found.slices[which];
     let (low, span) = (found.range.low as f32, found.range.span().max(f64::MIN_POSITIVE) as f32);

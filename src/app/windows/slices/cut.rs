@@ -1,4 +1,4 @@
-//! One of the three cuts of the window "Slices": its picture, the letters at its edges, and what the mouse does on it.
+//! One of the three cuts of the window "Slices": texture, letters at its edges, and mouse gestures.
 
 use std::sync::Arc;
 
@@ -16,13 +16,13 @@ use crate::app::viewport::overlay::side_letters;
 use crate::data::{Shown, ValueRange, Volume};
 use crate::model::TransferFunction;
 
-/// Points from the edges of a slice to its letters.
+/// Distance from the edges of a slice to its letters, in points.
 const LETTER_MARGIN: f32 = 3.0;
 
-/// What a texture shows: volume, plane, slice, grey levels, colours.
+/// Inputs of a texture: content id of the volume, plane, slice index, grey levels, colours.
 type Drawn = (u64, SlicePlane, usize, Grey, Option<TransferFunction>);
 
-/// Plane of a cut, and its size.
+/// Plane of a cut, and its size on screen.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shape {
     pub plane: SlicePlane,
@@ -30,7 +30,7 @@ pub(super) struct Shape {
     pub edge: f32,
 }
 
-/// A cut, with the texture that was made last.
+/// Cut through the volume, with its cached texture.
 #[derive(Default)]
 pub(super) struct Cut {
     texture: Option<TextureHandle>,
@@ -38,7 +38,7 @@ pub(super) struct Cut {
 }
 
 impl Cut {
-    /// Shows the cut through the cursor. `turned`: what the wheel has turned beyond whole slices.
+    /// Shows the cut through the cursor. `turned`: fraction of a slice that the wheel has turned.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
@@ -59,7 +59,7 @@ impl Cut {
             ui.spacing_mut().item_spacing.y = 2.0;
             let name = text::slices::plane(name(plane), plane.across, cursor[plane.across]);
             ui.add(egui::Label::new(egui::RichText::new(name).small().weak()).truncate());
-            // Beside each other they begin at the same places.
+            // All frames begin at the same height when side by side.
             let (frame, response) =
                 ui.allocate_exact_size(vec2(edge, size.y.max(0.4 * edge)), Sense::click_and_drag());
             let area = Rect::from_center_size(frame.center(), size);
@@ -70,7 +70,7 @@ impl Cut {
                 WidgetInfo::labeled(Role::Canvas, true, name.unwrap_or_else(|| text::slices::across(across)))
             });
             let painter = ui.painter_at(frame);
-            // Not as black as data may be, so that it is seen where these end.
+            // Lighter than black data, so that the edge of the slice is visible.
             painter.rect_filled(frame, 0.0, theme::EMPTY_CANVAS);
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             painter.image(texture.id(), area, whole, Color32::WHITE);
@@ -88,7 +88,7 @@ impl Cut {
         });
     }
 
-    /// Makes the texture anew, if what it is to show has changed.
+    /// Updates the texture if its inputs have changed.
     fn draw(
         &mut self,
         ui: &Ui,
@@ -102,7 +102,7 @@ impl Cut {
         if self.drawn.as_ref() == Some(&what) {
             return;
         }
-        // Whatever the picture shows: beyond these all values look the same.
+        // Independent of the shown range of the picture: beyond these grey levels all values look alike.
         let ValueRange { low, high } = volume.shown_range();
         let greys = Shown::Range(ValueRange::new(low.min(grey.black), high.max(grey.white)));
         let is_by_label = colors.is_some() && volume.shown_labels().is_some();
@@ -117,7 +117,7 @@ impl Cut {
     }
 }
 
-/// What a plane is called.
+/// Name of a slice plane, anatomical if the volume is.
 fn name(plane: SlicePlane) -> &'static str {
     match plane.of_body {
         Some(BodyPlane::Sagittal) => text::slices::SAGITTAL,
@@ -148,11 +148,11 @@ fn move_cursor(
     }
 }
 
-/// Where the other two cuts go through this one.
+/// Paints where the other two cuts intersect this one.
 fn crosshair(painter: &Painter, area: Rect, plane: SlicePlane, cursor: [usize; 3], dims: [usize; 3]) {
     let at = plane.place(cursor, dims, area);
     let stroke = |axis: usize| Stroke::new(1.0, theme::AXES[axis].gamma_multiply(0.8));
-    // A line lies along the axis that it stands for.
+    // A line runs along the axis whose colour it has.
     painter.hline(area.x_range(), at.y, stroke(plane.right.axis));
     painter.vline(at.x, area.y_range(), stroke(plane.up.axis));
 }

@@ -1,4 +1,4 @@
-//! What a slice looks like: greys, or the colours of the transfer function.
+//! Rendering of slices as images: in greys, or in the colours of the transfer function.
 
 use eframe::egui::ecolor::gamma_u8_from_linear_f32;
 use eframe::egui::{Color32, ColorImage, Vec2};
@@ -7,42 +7,43 @@ use super::plane::SlicePlane;
 use crate::data::{ValueRange, Volume};
 use crate::model::TransferFunction;
 
-/// Steps of the table from densities to colours: as many greys as anyone can tell apart, four times over.
+/// Number of steps of the lookup table from densities to colours: four times as many greys as can be told apart.
 const STEPS: usize = 1024;
 
-/// The values that are black and white.
+/// Grey window: values that are shown black and white.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Grey {
-    /// This, and everything below it.
+    /// Value that is black, as are all below it.
     pub black: f64,
-    /// This, and everything above it.
+    /// Value that is white, as are all above it.
     pub white: f64,
 }
 
 impl Grey {
-    /// This scale of greys with black below white, both among the values that there are, or nearly.
+    /// Clamps the window near a range of values, with black below white.
     pub(crate) fn within(self, ValueRange { low, high }: ValueRange) -> Self {
         let span = (high - low).max(f64::MIN_POSITIVE);
         let black = self.black.clamp(low - span, high + span);
         Self { black, white: self.white.clamp(black + span * 1e-3, high + 3.0 * span) }
     }
 
-    /// Value that is a middle grey.
+    /// Window level: the value that is middle grey.
     pub(crate) fn level(self) -> f64 {
         f64::midpoint(self.black, self.white)
     }
 
-    /// Distance in values from black to white.
+    /// Window width: distance in values from black to white.
     pub(crate) fn width(self) -> f64 {
         self.white - self.black
     }
 
-    /// Scale of greys with a middle and a width, in data units.
+    /// Creates a window from its level and width, in data units.
     pub(crate) fn from_level_and_width(level: f64, width: f64) -> Self {
         Self { black: level - width / 2.0, white: level + width / 2.0 }
     }
 
-    /// As radiologists drag: to the right for less contrast, up for a brighter slice. By shares of a slice.
+    /// Changes the window by a drag, as radiology viewers do: to the right for less contrast, up for a brighter
+    /// slice. `by` is in shares of a slice.
     pub(crate) fn drag(&mut self, by: Vec2, range: ValueRange) {
         let level = self.level() + f64::from(by.y) * (range.high - range.low);
         let width = self.width() * f64::from(by.x * 2.0).exp();
@@ -50,8 +51,8 @@ impl Grey {
     }
 }
 
-/// Colours of densities from 0 to 1. With a transfer function, that of settings as they are drawn, in its colours as far
-/// as it is opaque.
+/// Lookup table of colours for densities from 0 to 1. With a transfer function (of settings as they are drawn), its
+/// colours are blended over the greys by its opacity.
 pub(crate) fn lookup(volume: &Volume, grey: Grey, transfer: Option<&TransferFunction>) -> Vec<Color32> {
     let color = |step: usize| {
         let density = step as f64 / STEPS as f64;
@@ -67,8 +68,7 @@ pub(crate) fn lookup(volume: &Volume, grey: Grey, transfer: Option<&TransferFunc
     (0..=STEPS).map(color).collect()
 }
 
-/// The slice of a plane that holds the voxels with an index across it, in the colours of a table; black where they are
-/// missing.
+/// Renders the slice of a plane at an index across it, through a lookup table; missing voxels are black.
 pub(crate) fn slice(volume: &Volume, plane: &SlicePlane, at: usize, table: &[Color32]) -> ColorImage {
     let dims = volume.dims();
     let [u, v] = [plane.right.axis, plane.up.axis];
@@ -93,7 +93,7 @@ mod tests {
     use eframe::egui::vec2;
     use glam::DVec3;
 
-    /// Values x + 10 y + 100 z.
+    /// Volume with the values x + 10 y + 100 z.
     fn volume() -> Volume {
         let values = (0..2 * 3 * 4).map(|at| (at % 2 + 10 * (at / 2 % 3) + 100 * (at / 6)) as u16).collect();
         Volume::with_spacing("steps", [2, 3, 4], DVec3::ONE, Samples::U16(values)).unwrap()
@@ -116,7 +116,7 @@ mod tests {
             assert_eq!(image.size, size, "across axis {axis}");
             assert_eq!(image.pixels[0], grey(top_left), "across axis {axis}");
             assert_eq!(*image.pixels.last().unwrap(), grey(bottom_right), "across axis {axis}");
-            // Turned by half a turn.
+            // Rotated by 180°.
             let [right, up] = [plane.right, plane.up].map(|run| ScreenAxis { is_reversed: true, ..run });
             let turned = slice(&volume, &SlicePlane { right, up, ..plane }, 1, &table);
             assert_eq!(turned.size, size);

@@ -1,4 +1,4 @@
-//! The window "Slices": three cuts through the data along its axes, through a cursor that they share with the
+//! Window "Slices": three orthogonal cuts through the volume along its axes, through a cursor shared with the
 //! picture.
 
 mod cut;
@@ -22,43 +22,44 @@ use crate::data::{ValueRange, Volume};
 use crate::math::SceneSpace;
 use crate::model::{LabelTable, TransferFunction};
 
-/// Longest edge of a slice on screen, in points, before somebody makes the window larger or smaller.
+/// Longest edge of a slice on screen, in points, before the user resizes the window.
 const EDGE: f32 = 208.0;
-/// The least of them, in which something is seen, and the most: two fill a large screen.
+/// Smallest edge of a slice, in points, at which something is visible.
 const LEAST_EDGE: f32 = 96.0;
+/// Largest edge of a slice, in points: two of them fill a large screen.
 const MOST_EDGE: f32 = 900.0;
 
-/// Shares of all voxels that are as black, or as white, as can be, before the user says otherwise.
+/// Quantiles of all voxels that are shown black and white, unless the file or the user sets the window.
 const CLIPPED: [f64; 2] = [0.005, 0.995];
 
-/// Narrowest window, as a share of the values that there are: a slice of two tones.
+/// Narrowest grey window, as a share of the value range: a slice of two tones.
 const LEAST_WINDOW: f64 = 1e-3;
 
-/// Look that slices share with the picture.
+/// Part of the look that slices share with the picture.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SliceLook<'a> {
-    /// The transfer function of the settings as they are drawn.
+    /// Transfer function of the settings as they are drawn.
     pub transfer: &'a TransferFunction,
-    /// What labels are called.
+    /// Names and looks of labels.
     pub labels: &'a LabelTable,
 }
 
-/// State of the window.
+/// State of the window "Slices".
 #[derive(Default)]
 pub(crate) struct Slices {
-    /// Whether it is there.
+    /// True while the window is open.
     pub open: bool,
-    /// Side on which a body's right is shown.
+    /// Side of the screen on which a body's right is shown.
     pub convention: Convention,
-    /// The voxel through which all cuts go.
+    /// Index of the voxel through which all cuts go.
     cursor: [usize; 3],
-    /// Of which volume that is, and the grey levels.
+    /// Content id of the volume of the cursor, and its grey window.
     of: Option<(u64, Grey)>,
-    /// In the colours of the transfer function, where that shows something.
+    /// True to show the colours of the transfer function, blended by its opacity.
     colored: bool,
-    /// What the wheel has turned beyond whole slices: it comes in many small parts.
+    /// Fraction of a slice that the wheel has turned: it reports many small steps.
     turned: f64,
-    /// From above, from the front, from the side.
+    /// Cuts seen from above, from the front and from the side.
     cuts: [Cut; 3],
     /// Longest edge of a slice on screen, in points.
     edge: f32,
@@ -74,7 +75,7 @@ impl std::fmt::Debug for Slices {
 }
 
 impl Slices {
-    /// Moves the cursor to a point of index space.
+    /// Moves the cursor to the voxel nearest to a point of index space.
     pub(crate) fn point_at(&mut self, index: DVec3, dims: [usize; 3]) {
         for axis in 0..3 {
             self.cursor[axis] = (index[axis].round().max(0.0) as usize).min(dims[axis] - 1);
@@ -101,7 +102,7 @@ impl Slices {
         let tool =
             Tool { title: text::slices::TITLE, default_pos: [24.0, 60.0], default_width: 2.0 * EDGE + 8.0 };
         tool.show(ctx, &mut open, |ui| {
-            // Two beside each other.
+            // Two slices side by side.
             self.edge = ((ui.available_width() - 8.0) / 2.0).clamp(LEAST_EDGE, MOST_EDGE);
             let [above, front, side] = SlicePlane::all(volume, self.convention);
             ui.horizontal_top(|ui| {
@@ -117,7 +118,7 @@ impl Slices {
         self.of = Some((volume.content_id(), grey.within(facts.range)));
     }
 
-    /// One of the cuts, and what the mouse does on it.
+    /// Shows one of the cuts and handles its mouse gestures.
     fn cut(
         &mut self,
         ui: &mut Ui,
@@ -132,7 +133,7 @@ impl Slices {
         self.cuts[at].show(ui, shape, volume, (&mut self.cursor, &mut self.turned), grey, colors);
     }
 
-    /// What is known of the cursor, and how grey the slices are.
+    /// Shows position and value at the cursor, and the fields of the grey window.
     fn facts(
         &mut self,
         ui: &mut Ui,
@@ -185,7 +186,7 @@ impl Slices {
         ui.weak(text::slices::HINT);
     }
 
-    /// The cursor in the picture: a line along each axis of the grid.
+    /// Paints the cursor in the 3-D picture: a line along each axis of the grid.
     pub(crate) fn mark(&self, painter: &Painter, view_projection: &ViewProjection, scene: &SceneSpace) {
         if !self.open || self.of.is_none() {
             return;
@@ -204,12 +205,12 @@ impl Slices {
     }
 }
 
-/// Grey levels before anybody has changed them: those that the file suggests, or of the values that matter.
+/// Initial grey window: the one that the file suggests, or quantiles of the histogram.
 fn first_grey(volume: &Volume, facts: &VolumeFacts) -> Grey {
     let found = volume.hints().window;
     let [black, white] =
         found.unwrap_or_else(|| CLIPPED.map(|share| volume.value_of(facts.histogram.percentile(share))));
-    // Of whole numbers, whole ones.
+    // Integer data get an integer window.
     if facts.levels.is_some() && decimals(facts.range) == 0 {
         Grey { black: black.floor(), white: white.ceil() }
     } else {
@@ -217,7 +218,7 @@ fn first_grey(volume: &Volume, facts: &VolumeFacts) -> Grey {
     }
 }
 
-/// Fields for the window and its level, a row each, in as many digits as tell values apart.
+/// Fields for level and width of the grey window, a row each, with as many digits as the values need.
 fn window_and_level(ui: &mut Ui, grey: &mut Grey, facts: &VolumeFacts) {
     let ValueRange { low, high } = facts.range;
     let span = (high - low).max(f64::MIN_POSITIVE);
@@ -248,7 +249,7 @@ mod tests {
 
     #[test]
     fn greys_are_those_of_the_values_that_matter() {
-        // A ramp, and one voxel that is far beyond it.
+        // A ramp with one outlier far beyond it.
         let mut values: Vec<f32> = (0..24 * 24 * 24).map(|at| (at % 1000) as f32).collect();
         values[7] = 1e20;
         let volume = Volume::with_spacing("ramp", [24; 3], DVec3::ONE, Samples::F32(values)).unwrap();

@@ -1,8 +1,8 @@
-//! How a slice lies on the screen: which axes of the grid run to the right and upwards, and which sides of a body are at
-//! its edges.
+//! Orientation of slices on the screen: grid axes to the right and upwards, and the anatomical sides at their edges.
 //!
-//! Slices of a body lie as people look at them: the front at the top of axial ones, the head at the top of the others,
-//! and a body's right on the side that the convention names. Of other data x runs to the right and z, or else y, upwards.
+//! Slices of a body follow the radiological viewing convention or the neurological one: anterior at the top of axial
+//! slices, superior at the top of the others, and the body's right on the side that the convention names. For other
+//! data x runs to the right and z, or else y, upwards.
 
 use eframe::egui::{Pos2, Rect, Vec2, pos2};
 use glam::DVec3;
@@ -16,70 +16,70 @@ use crate::math::SceneSpace;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Convention {
-    /// On the left, as if the body faced the viewer.
+    /// Body's right on the left, as if the body faced the viewer.
     #[default]
     Radiological,
-    /// On the right, as if the viewer stood behind the body.
+    /// Body's right on the right, as if the viewer stood behind the body.
     Neurological,
 }
 
-/// Plane of a body, named by the axis of the body across which it lies.
+/// Anatomical plane, named by the axis of the body across which it lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum BodyPlane {
-    /// Across the axis from left to right.
+    /// Plane across the left–right axis.
     Sagittal,
-    /// Across the axis from back to front.
+    /// Plane across the posterior–anterior axis.
     Coronal,
-    /// Across the axis from feet to head.
+    /// Plane across the inferior–superior axis.
     Axial,
 }
 
-/// Axis of the grid in a direction of the screen.
+/// Grid axis that runs along a direction of the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct ScreenAxis {
-    /// Axis of index space.
+    /// Index of the axis in index space.
     pub axis: usize,
-    /// Indices fall in that direction.
+    /// True if indices decrease in that direction.
     pub is_reversed: bool,
 }
 
-/// Way in which the slices across one axis of the grid lie on the screen.
+/// Orientation on the screen of the slices across one grid axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct SlicePlane {
-    /// Axis of index space across which they lie.
+    /// Axis of index space across which the slices lie.
     pub across: usize,
-    /// Axis to the right.
+    /// Grid axis that runs to the right.
     pub right: ScreenAxis,
-    /// Axis upwards.
+    /// Grid axis that runs upwards.
     pub up: ScreenAxis,
-    /// Plane of the body that is nearest, where there is a body.
+    /// Nearest anatomical plane, if the volume has anatomical directions.
     pub of_body: Option<BodyPlane>,
 }
 
-/// Axes of a body, of right-anterior-superior space.
+/// Indices of the body's axes in right–anterior–superior space.
 const RIGHT: usize = 0;
 const ANTERIOR: usize = 1;
 const SUPERIOR: usize = 2;
 
 impl ScreenAxis {
-    /// Share of the way along this axis, from the left or from the bottom, at which the middle of a voxel lies.
+    /// Position of a voxel's centre along this axis, as a share from the left or the bottom.
     fn share(self, index: usize, count: usize) -> f32 {
         let share = (index as f32 + 0.5) / count as f32;
         if self.is_reversed { 1.0 - share } else { share }
     }
 
-    /// Voxel at a share of the way along this axis.
+    /// Index of the voxel at a share of the length of this axis.
     fn index(self, share: f32, count: usize) -> usize {
         let share = if self.is_reversed { 1.0 - share } else { share };
         ((share * count as f32).max(0.0) as usize).min(count - 1)
     }
 
-    /// Voxel that is so many voxels from the left or from the bottom.
+    /// Index of the n-th voxel from the left or the bottom.
     pub(super) fn nth(self, nth: usize, count: usize) -> usize {
         if self.is_reversed { count - 1 - nth } else { nth }
     }
 
-    /// Direction of this axis in scene space, of length 1.
+    /// Direction of this axis in scene space, a unit vector.
     fn in_scene(self, scene: &SceneSpace) -> DVec3 {
         let along = scene.scene_from_index.matrix3.col(self.axis).normalize_or_zero();
         if self.is_reversed { -along } else { along }
@@ -87,20 +87,20 @@ impl ScreenAxis {
 }
 
 impl SlicePlane {
-    /// Slices across an axis of a grid of no body.
+    /// Creates the plane across an axis of a grid without anatomical directions.
     pub(crate) fn across(axis: usize) -> Self {
         let [right, up] = [[1, 2], [0, 2], [0, 1]][axis].map(|axis| ScreenAxis { axis, is_reversed: false });
         Self { across: axis, right, up, of_body: None }
     }
 
-    /// The three cuts of a volume: from above, from the front and from the side.
+    /// Planes of the three cuts of a volume: from above, from the front and from the side.
     pub(crate) fn all(volume: &Volume, convention: Convention) -> [Self; 3] {
         if !volume.is_anatomical() {
             return [2, 1, 0].map(Self::across);
         }
         let axes = volume.world_from_index().matrix3;
         let headings = Headings::nearest([axes.x_axis, axes.y_axis, axes.z_axis]).directions();
-        // The axis of the grid that runs along an axis of the body, towards its end or towards its start.
+        // The grid axis that runs along an axis of the body, towards its end or its start.
         let run = |of_body: usize, to_end: bool| {
             let axis = (0..3).find(|&axis| headings[axis][of_body] != 0.0).unwrap_or(of_body);
             ScreenAxis { axis, is_reversed: (headings[axis][of_body] > 0.0) != to_end }
@@ -115,23 +115,23 @@ impl SlicePlane {
         [
             plane(SUPERIOR, run(RIGHT, to_right), ANTERIOR, BodyPlane::Axial),
             plane(ANTERIOR, run(RIGHT, to_right), SUPERIOR, BodyPlane::Coronal),
-            // Both conventions look at a body's left side: its front is on the left.
+            // Both conventions look at a body's left side, with its front on the left.
             plane(RIGHT, run(ANTERIOR, false), SUPERIOR, BodyPlane::Sagittal),
         ]
     }
 
-    /// Letters of the body's sides at the right, the left, the top and the bottom of the slices.
+    /// Anatomical letters at the right, left, top and bottom of the slices.
     pub(crate) fn sides(&self, scene: &SceneSpace) -> [String; 4] {
         sides_along(self.right.in_scene(scene), self.up.in_scene(scene))
     }
 
-    /// Where the middle of a voxel lies in an area of the screen that the slice fills.
+    /// Position of a voxel's centre on the screen, in an area that the slice fills.
     pub(crate) fn place(&self, voxel: [usize; 3], dims: [usize; 3], area: Rect) -> Pos2 {
         let share = |run: ScreenAxis| run.share(voxel[run.axis], dims[run.axis]);
         pos2(area.left() + share(self.right) * area.width(), area.bottom() - share(self.up) * area.height())
     }
 
-    /// Moves a voxel within its slice to a place of the screen.
+    /// Moves a voxel within its slice to a position on the screen.
     pub(crate) fn move_to(&self, at: Pos2, area: Rect, dims: [usize; 3], voxel: &mut [usize; 3]) {
         let Vec2 { x, y } = (at - area.left_bottom()) / area.size();
         voxel[self.right.axis] = self.right.index(x, dims[self.right.axis]);
@@ -146,7 +146,7 @@ mod tests {
     use super::*;
     use crate::data::Samples;
 
-    /// Volume of 2 × 3 × 4 voxels of a body, with axes of the grid in these directions of right-anterior-superior space.
+    /// Anatomical volume of 2 × 3 × 4 voxels, with grid axes in these directions of right–anterior–superior space.
     fn body(axes: [[f64; 3]; 3]) -> Volume {
         let world_from_index = DAffine3::from_mat3(DMat3::from_cols_array_2d(&axes));
         let samples = Samples::U8((0..24).collect());
@@ -163,7 +163,7 @@ mod tests {
         let back = |axis: [f64; 3]| axis.map(|c| -c);
         for axes in [[x, y, z], [back(x), back(y), z], [y, back(z), x], [back(z), x, back(y)]] {
             let volume = body(axes);
-            // Right, left, top and bottom.
+            // Letters at right, left, top and bottom.
             assert_eq!(letters(&volume, Convention::Radiological), ["LRAP", "LRSI", "PASI"], "{axes:?}");
             assert_eq!(letters(&volume, Convention::Neurological), ["RLAP", "RLSI", "PASI"], "{axes:?}");
             let planes = SlicePlane::all(&volume, Convention::Radiological);
@@ -186,7 +186,7 @@ mod tests {
 
     #[test]
     fn oblique_bodies_have_the_letters_of_both_sides() {
-        // A quarter of a right angle about the axis from feet to head, then less than 17°.
+        // At 30° about the inferior–superior axis both letters are shown, at 10° only the nearer one.
         let turned = |deg: f64| DMat3::from_rotation_z(deg.to_radians()).to_cols_array_2d();
         let oblique = letters(&body(turned(30.0)), Convention::Radiological);
         assert_eq!(oblique, ["LPRAALPR", "LPRASI", "PRALSI"]);
