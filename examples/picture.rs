@@ -1,4 +1,4 @@
-//! A picture without a window: `cargo run --example picture -- [VOLUME [OUT.png]]`
+//! Example that renders a picture without a window: `cargo run --example picture -- [VOLUME [OUT.png]]`
 //!
 //! VOLUME is a file (RAW, NRRD), or a built-in volume such as `builtin:cloud:64`.
 #![expect(clippy::print_stdout, reason = "it says what it made")]
@@ -18,19 +18,19 @@ fn main() -> Result<(), Box<dyn Error>> {
     let path =
         arguments.next().map_or_else(|| std::env::temp_dir().join("chiaroscuro-picture.png"), PathBuf::from);
 
-    // A volume, with what follows from its voxels.
+    // A volume, with data derived from its voxels.
     let dataset = Dataset::new(open(&source, &LoadOptions::default(), &LoadControl::new())?);
 
     // A device without a window: the fastest, or the one that WGPU_ADAPTER_NAME names.
     let context = Context::headless()?;
     let mut renderer = Renderer::new(&context)?;
 
-    // Settings are the whole look. These are found from the voxels; every field may be changed.
+    // The settings are the whole look. These are derived from the voxels; every field may be changed.
     let mut settings = first_look(&mut renderer, &dataset)?;
     settings.camera.azimuth_deg += 20.0;
     settings.floor.on = true;
 
-    // Bytes in sRGB, RGBA, row by row from the top left.
+    // RGBA bytes in sRGB, row by row from the top left.
     let size = [320, 240];
     let shown = renderer.render_shown(&dataset, &settings, size, &RenderOptions::default())?;
     export_png(size, &shown, false, None, &path)?;

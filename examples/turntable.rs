@@ -1,4 +1,4 @@
-//! One turn of the camera as a file that moves: `cargo run --example turntable -- [OUT.png|OUT.gif]`
+//! Example that exports a turntable animation: `cargo run --example turntable -- [OUT.png|OUT.gif]`
 #![expect(clippy::print_stdout, reason = "it says what it made")]
 
 use std::error::Error;
@@ -17,18 +17,18 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut renderer = Renderer::new(&Context::headless()?)?;
     let settings = first_look(&mut renderer, &dataset)?;
 
-    // The name decides: GIF, animated PNG, MP4 (where ffmpeg is installed), or a folder of pictures.
+    // The extension decides: GIF, animated PNG, MP4 (if ffmpeg is installed), or a folder of pictures.
     let reel = AnimationSpec { size: [160, 120], frames: 24, rate: 12, transparent: false };
     let mut file = Animation::create(&path, &reel)?;
     for frame in 0..reel.frames {
-        // `Some(0)` in place of `None` turns the first light. The light volumes of the first picture serve all
-        // others: lights of the scene stay where they are when the camera turns.
+        // `Some(0)` instead of `None` turns the first light. The light volumes of the first picture serve all others:
+        // lights of the scene stay in place when the camera turns.
         let settings = settings.turned(None, f64::from(frame) / f64::from(reel.frames));
         let shown = renderer.render_shown(&dataset, &settings, reel.size, &RenderOptions::default())?;
-        // Files that can carry a text get the settings, so that each picture can be made again.
+        // Formats with metadata get the settings, so that each picture can be rendered again.
         file.add(&shown, &Record::text(&settings, None, None))?;
     }
-    // Before this there is no file of that name.
+    // Until then no file of that name exists.
     file.finish()?;
     let fills = renderer.light_rebuilds();
     println!("{}: {} pictures; light volumes were filled {fills:?} times", path.display(), reel.frames);

@@ -1,6 +1,6 @@
-//! A light is dragged hundreds of times, as a window does it: nothing may be left behind.
+//! Soak test: a light is dragged hundreds of times, as in a window, and no resource may leak.
 //!
-//! `script/soak HOURS` drags for hours and looks at frame times, too.
+//! `script/soak HOURS` drags for hours and checks frame times as well.
 
 #![expect(clippy::print_stdout, reason = "what was counted, for whoever reads the log")]
 
@@ -12,22 +12,22 @@ use chiaroscuro::gpu::{Context, RenderOptions, Renderer, device_descriptor};
 use chiaroscuro::model::{Engine, Kernel, Resolution, Settings, auto};
 use chiaroscuro::plan::Request;
 
-/// Drags that always happen; a hundred of them end as they began.
+/// Number of drags in the ordinary run; after every hundred the settings are those of the start.
 const DRAGS: usize = 400;
 
-/// Drags of the long version.
+/// Number of drags in the long version.
 const MANY_DRAGS: usize = 1000;
 
-/// Drags that may still allocate: pipelines, caches and the driver's pools fill up.
+/// Number of drags that may still allocate, while pipelines, caches and the driver's pools fill up.
 const WARM_UP: usize = 200;
-/// After so many previews the hand rests, and the picture is drawn at full quality.
+/// Number of previews after which the drag pauses and the picture is drawn at full quality.
 const REST_EVERY: usize = 10;
 
-/// What a process may grow by after warm-up: a leak of a single small object per drag would be seen in the
-/// counts; this bounds what nobody counts. Four KiB were seen.
+/// Growth of the process after warm-up that is tolerated, in bytes. A leak of a single small object per drag would be
+/// seen in the counts; this bounds what is not counted. 4 KiB were seen.
 const HOST_SLACK: u64 = 2 << 20;
 
-/// Drift of the median preview over hours.
+/// Largest relative drift of the median preview time over hours.
 const MAX_DRIFT: f64 = 0.05;
 
 struct Soak {
@@ -35,7 +35,7 @@ struct Soak {
     renderer: Renderer,
     dataset: Dataset,
     settings: Settings,
-    /// Slabs of light that are marched at a time.
+    /// Number of light slabs that are marched at a time.
     chunk: Option<u32>,
 }
 
@@ -53,10 +53,10 @@ impl Soak {
         Self { instance, renderer, dataset: Dataset::new(volume), settings, chunk: None }
     }
 
-    /// Moves the light, and sometimes the camera and the transfer function; a preview, or a whole picture.
+    /// Moves the light, and sometimes the camera and the transfer function; draws a preview or a full picture.
     fn drag(&mut self, at: usize) -> Duration {
         let start = Instant::now();
-        // Three turns in a hundred drags, which end as they began: lists of bricks differ with the light.
+        // Three turns in a hundred drags, which end at the start: lists of bricks differ with the light's position.
         let turn = glam::DQuat::from_rotation_z(0.03 * std::f64::consts::TAU * (at % 100) as f64);
         let home = glam::DVec3::new(1.2, -1.5, 1.8);
         self.settings.lights[0].position = (turn * home).into();
@@ -70,7 +70,7 @@ impl Soak {
         start.elapsed()
     }
 
-    /// A picture at rest, or a preview.
+    /// Draws a picture at rest, or a preview.
     fn draw(&mut self, is_rest: bool) {
         let mut settings = self.settings.clone();
         if !is_rest {
@@ -90,7 +90,7 @@ impl Soak {
         self.renderer.read_shown().expect("a picture");
     }
 
-    /// Objects of every kind that the graphics library keeps for us, and the bytes of our textures.
+    /// Counts of objects of every kind in the graphics library, and bytes of the textures.
     fn kept(&self) -> [(&'static str, u64); 9] {
         self.renderer.context().wait().expect("nothing is in flight");
         let report = self.instance.generate_report().expect("a native library counts");
@@ -110,7 +110,7 @@ impl Soak {
     }
 }
 
-/// Bytes of this process in memory, where the system says.
+/// Resident memory of this process, in bytes, where the system reports it.
 fn resident_bytes() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = text.lines().find(|line| line.starts_with("VmRSS:"))?;
@@ -130,15 +130,15 @@ fn what_only_light_needs_goes_with_it() {
         soak.settings.camera.orbit(3.0, 0.2);
         soak.draw(true);
     };
-    // A picture that fills a light volume leaves its sheets to the next; one that fills none needs none.
-    // Two, since two targets take turns.
+    // A picture that fills a light volume leaves its sheets to the next; one that fills none releases them. Two,
+    // because two targets alternate.
     soak.draw(true);
     soak.settings.lights[0].position[0] += 0.1;
     soak.draw(true);
     let filled = textures(&soak);
     orbit(&mut soak);
     assert_eq!(textures(&soak), filled.map(|n| n - 1), "the sheets are gone, and nothing holds on to them");
-    // Sheets of another size take their place.
+    // Sheets of another size replace them.
     for (chunk, resolution) in [(4, Resolution::Full), (8, Resolution::Half), (64, Resolution::Full)] {
         soak.settings.shadows.resolution = resolution;
         soak.settings.lights[0].position[0] += 0.1;
@@ -152,7 +152,7 @@ fn what_only_light_needs_goes_with_it() {
         orbit(soak);
         soak.kept()
     };
-    // Spare light volumes are of one size after a few.
+    // Spare light volumes have one size after a few drags.
     for _ in 0..3 {
         drag(&mut soak);
     }
@@ -171,7 +171,7 @@ fn scattered_light_leaves_nothing_behind() {
         soak.draw(true);
         soak.kept()
     };
-    // Light volumes that are kept beside the current one come first.
+    // Light volumes that are kept beside the current one are allocated first.
     for _ in 0..4 {
         drag(&mut soak);
     }
@@ -193,7 +193,7 @@ fn a_thousand_drags_leave_nothing_behind() {
     drag_and_look(MANY_DRAGS, hours.map_or(0.0, |hours| hours.parse().expect("a number of hours")));
 }
 
-/// Drags so often, and for so many hours, and looks every hundred drags at what is kept.
+/// Drags a number of times, and for a number of hours, and checks the resource counts after every hundred drags.
 fn drag_and_look(drags: usize, hours: f64) {
     let mut soak = Soak::new();
     let start = Instant::now();
@@ -210,7 +210,7 @@ fn drag_and_look(drags: usize, hours: f64) {
                 late.push(took);
             }
         }
-        // A hundred drags end as they began: the picture at rest, the transfer function as it was.
+        // A hundred drags end at the start: the picture at rest, the transfer function unchanged.
         if at >= WARM_UP && at.is_multiple_of(100) {
             let kept = soak.kept();
             assert_eq!(*first.get_or_insert(kept), kept, "after {at} drags");
@@ -223,7 +223,7 @@ fn drag_and_look(drags: usize, hours: f64) {
         at += 1;
     }
     println!("{at} drags; {:?}; resident {:?}, {:?} at first", first, resident_bytes(), memory.flatten());
-    // Only over hours do frame times mean anything.
+    // Frame times are meaningful only over hours.
     if hours > 0.0 {
         let (early, late) = (median(early), median(late));
         println!("median preview {:.2} ms early, {:.2} ms late", early * 1e3, late * 1e3);

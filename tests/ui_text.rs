@@ -1,10 +1,10 @@
-//! What the window says is in `src/app/text/`: no other file of the window holds words for people.
+//! Localisation check: all texts of the window are in `src/app/text/`, no other file of the window contains any.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Right in front of words that people do not see in the window: names of things for the library of the window
-/// and of what the system sets and answers, what developers read, and errors, which their types word.
+/// Code before string literals that users do not see: ids and names for the UI library and the operating system, log
+/// messages for developers, and errors, whose types contain the text.
 const NOT_SHOWN: [&str; 15] = [
     "var_os(",
     "Id::unique(",
@@ -23,7 +23,7 @@ const NOT_SHOWN: [&str; 15] = [
     "const METHOD: &str =",
 ];
 
-/// A string and what stands before it in its statement.
+/// String literal, with the code before it in its statement.
 #[derive(Debug, PartialEq)]
 struct Literal {
     line: usize,
@@ -31,7 +31,7 @@ struct Literal {
     text: String,
 }
 
-/// All strings of a source text that are neither in comments nor in its tests.
+/// Returns all string literals of a source text, except those in comments and in its tests.
 fn literals(source: &str) -> Vec<Literal> {
     let source = source.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
     let mut found = Vec::new();
@@ -73,8 +73,8 @@ fn literals(source: &str) -> Vec<Literal> {
     found
 }
 
-/// Whether a text has words as sentences and labels have them: two in a row, or one with a capital. What stands
-/// in braces is filled in.
+/// Returns true if a text reads like a sentence or label: two words in a row, or one with a capital. Placeholders in
+/// braces are ignored.
 fn is_for_people(text: &str) -> bool {
     let mut depth = 0;
     let shown: String = text
@@ -86,7 +86,7 @@ fn is_for_people(text: &str) -> bool {
         .collect();
     let letters = |word: &str| word.chars().filter(|c| c.is_alphabetic()).count();
     let words: Vec<&str> = shown.split_whitespace().filter(|word| letters(word) > 0).collect();
-    // Names of variables have lines in them.
+    // Names of environment variables contain underscores.
     let capital =
         |word: &&str| letters(word) > 1 && word.starts_with(char::is_uppercase) && !word.contains('_');
     words.len() > 1 || words.iter().any(capital)
@@ -114,7 +114,7 @@ fn the_window_takes_its_words_from_one_module() {
     let app = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/app");
     let mut found = Vec::new();
     files(&app, &mut found);
-    // Nobody sees what tests say.
+    // Messages of tests are not shown to users.
     found.retain(|path| {
         !path.ends_with("tests.rs") && !path.components().any(|part| part.as_os_str() == "tests")
     });

@@ -1,4 +1,4 @@
-//! Crop box and clip plane, dragged in the picture, and slices beside it.
+//! Tests of the crop box and clip plane dragged in the picture, and of the slices beside it.
 
 use chiaroscuro::app::App;
 use eframe::egui::{self, Modifiers, vec2};
@@ -35,7 +35,7 @@ fn box_and_plane_are_dragged_in_the_picture() {
     let moved = harness.state().settings().cuts.plane.clone();
     assert!(moved.on && moved.offset > 0.1 && moved.normal == [0.0, -1.0, 0.0], "{moved:?}");
     harness.run_steps(2);
-    // As long as the arrow looks, so that its tip can follow however large the picture shows the volume.
+    // The drag is as long as the arrow appears, so that its tip can follow at any magnification.
     let (middle, tip) = (place(&harness, "Clip plane, place"), place(&harness, "Clip plane, direction"));
     let by = vec2(-0.6, -0.8) * 0.6 * (tip - middle).length();
     drag(&mut harness, tip, by);
@@ -52,7 +52,7 @@ fn box_and_plane_are_dragged_in_the_picture() {
     assert!(wheeled.offset > turned.offset + 0.005, "{wheeled:?}");
     assert_eq!(harness.state().settings().camera, camera, "neither drags nor wheel reached the camera");
 
-    // Across the line of sight, and all of it undone step by step.
+    // Across the line of sight; then all changes are undone step by step.
     harness.key_press_modifiers(Modifiers::SHIFT, egui::Key::X);
     harness.run_steps(3);
     let plane = &harness.state().settings().cuts.plane;
@@ -82,13 +82,13 @@ fn slices_and_picture_share_a_cursor() {
     assert!(harness.query_by_label("24, 24, 16").is_some(), "a quarter to the right and up");
     harness.hover_at(at);
     harness.step();
-    // 50 points to a notch.
+    // A notch of the wheel is 50 points.
     turn_wheel(&harness, 110.0);
     harness.run_steps(30);
     assert!(harness.query_by_label("24, 24, 18").is_some(), "two slices further");
     click(&mut harness, "As in the picture");
 
-    // What the picture shows under the pointer; the seat is below the window with the slices.
+    // The slices go to the point that is seen under the pointer; the seat is below the window with the slices.
     let (rect, _) = harness.state().viewport_rect().expect("a picture");
     let seat = rect.center() + vec2(20.0, 30.0);
     harness.get_by_label("Slices").rect();

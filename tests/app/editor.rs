@@ -1,4 +1,4 @@
-//! The editor of the transfer function.
+//! Tests of the transfer function editor: points, selection, colour maps and freehand drawing.
 
 use chiaroscuro::app::{App, Options};
 use chiaroscuro::model::{ControlPoint, Easing, Settings, TransferFunction};
@@ -21,7 +21,7 @@ fn the_transfer_function_is_edited_in_its_plot() {
     );
     assert_eq!(after.points[0], before.points[0]);
 
-    // A click on the empty plot adds a point, Delete removes it.
+    // A click on the empty plot adds a point; Delete removes it.
     let plot = harness.get_by_label("Transfer function plot").rect();
     // Between the ends of the curve, above it.
     let empty = plot.center_top() + vec2(10.0, 12.0);
@@ -34,8 +34,8 @@ fn the_transfer_function_is_edited_in_its_plot() {
     wait_until_idle(&mut harness);
 }
 
-/// What is seen of other values stays as it is when a point is added beyond the ends of the curve, and one step takes
-/// back all that came with it.
+/// A point added beyond the ends of the curve leaves the look of other values unchanged, and one undo step removes
+/// all that was added with it.
 #[test]
 fn a_point_beyond_the_ends_of_the_curve_brings_one_that_holds_the_rest() {
     let adjust = |mut settings: Settings| {
@@ -70,7 +70,7 @@ fn a_point_beyond_the_ends_of_the_curve_brings_one_that_holds_the_rest() {
     wait_until_idle(&mut harness);
 }
 
-/// The chain between the curves gives light one of its own, and takes it back.
+/// The link button gives light a curve of its own, and links it again.
 #[test]
 fn a_chain_links_the_curves() {
     let mut harness = window();
@@ -106,7 +106,7 @@ fn the_whole_curve_is_colored_moved_and_replaced() {
     click(&mut harness, "Bump");
     assert!(transfer(&harness).points.len() >= preset.points.len() + 8);
 
-    // The wheel shows fewer values, and points beyond are not in the way.
+    // The wheel zooms in, and points outside the range do not interfere.
     let plot = harness.get_by_label("Transfer function plot").rect();
     harness.hover_at(plot.left_center() + vec2(30.0, 0.0));
     harness.step();
@@ -126,7 +126,7 @@ fn points_are_selected_and_changed_together() {
     let place = |harness: &Harness<'_, App>, number: usize| {
         harness.get_by_label(&format!("Eye point {number}")).rect().center()
     };
-    // A frame around the second and the third, from above to below.
+    // A rubber band around the second and third point, from top to bottom.
     let plot = harness.get_by_label("Transfer function plot").rect();
     let (second, third) = (place(&harness, 2), place(&harness, 3));
     let from = Pos2::new(second.x - 6.0, plot.min.y + 3.0);
@@ -142,7 +142,7 @@ fn points_are_selected_and_changed_together() {
     assert!(by(1) > 0.0 && (by(1) - by(2)).abs() < 1e-9, "{} and {}", by(1), by(2));
     assert_eq!((moved[0], moved[3]), (before[0], before[3]));
 
-    // Looking at the colour changes nothing; a step to the right changes that of both.
+    // Opening the colour menu changes nothing; a step to the right changes the hue of both points.
     let colors = |harness: &Harness<'_, App>| points(harness).iter().map(|p| p.color).collect::<Vec<_>>();
     let plain = colors(&harness);
     click(&mut harness, "OKLCH…");
@@ -158,7 +158,7 @@ fn points_are_selected_and_changed_together() {
     harness.key_press(egui::Key::Escape);
     harness.run_steps(3);
 
-    // The way to the next point, for both; and one more with Shift.
+    // The interpolation to the next point, for both; and one more point with Shift.
     click(&mut harness, "Linear");
     click(&mut harness, "Smooth");
     let eased = points(&harness).iter().map(|point| point.easing).collect::<Vec<_>>();
@@ -181,7 +181,7 @@ fn points_are_selected_and_changed_together() {
     harness.key_press(egui::Key::Delete);
     harness.run_steps(2);
     assert_eq!(points(&harness).len(), before.len() - 3);
-    // All of them with Ctrl+A over the plot; Escape leaves them.
+    // Ctrl+A over the plot selects all points; Escape clears the selection.
     harness.hover_at(plot.center());
     harness.step();
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::A);
@@ -193,7 +193,7 @@ fn points_are_selected_and_changed_together() {
     click(&mut harness, "Shape");
     click(&mut harness, "Box");
     assert_eq!(points(&harness).len(), before.len());
-    // A selection does not outlive the points that it meant.
+    // A selection is cleared when the curve is replaced.
     harness.hover_at(plot.center());
     harness.step();
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::A);
@@ -215,7 +215,7 @@ fn a_curve_is_drawn_by_hand() {
     drag(&mut harness, from, vec2(260.0, -50.0));
     let drawn = harness.state().settings().transfer.clone();
     assert!(drawn != before && drawn.points.len() <= before.points.len() + 20, "{drawn:?}");
-    // One step, and Escape ends drawing.
+    // One undo step; Escape ends freehand drawing.
     harness.run_steps(8);
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
     harness.run_steps(3);

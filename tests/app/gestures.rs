@@ -1,4 +1,4 @@
-//! What the pointer does in the picture.
+//! Tests of pointer gestures in the picture: orbit, handles, flicks, window and level, and Escape.
 
 use chiaroscuro::app::App;
 use eframe::egui::{self, Event, Modifiers, PointerButton, vec2};
@@ -25,7 +25,7 @@ fn lights_and_camera_follow_the_mouse() {
     let (before, _) = picture(&mut harness);
     let rebuilds = harness.state().light_rebuilds();
 
-    // Orbit: nothing is refilled.
+    // Orbiting refills no light volume.
     let settings = harness.state().settings().clone();
     let (rect, _) = harness.state().viewport_rect().unwrap();
     drag(&mut harness, rect.left_bottom() + vec2(40.0, -30.0), vec2(60.0, -25.0));
@@ -38,7 +38,7 @@ fn lights_and_camera_follow_the_mouse() {
     assert!(turned != before);
     assert!(turned == render(&harness, size).shown, "after an orbit");
 
-    // The key light's handle.
+    // Drags the handle of the key light.
     harness.hover_at(rect.center());
     harness.run_steps(2);
     let handle = harness.state().light_handle_positions()[0];
@@ -53,18 +53,18 @@ fn lights_and_camera_follow_the_mouse() {
     assert!(lit != turned);
     assert!(lit == render(&harness, size).shown, "after a light drag");
 
-    // Undo puts the light back.
+    // Undo restores the light's position.
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
     harness.run_steps(3);
     assert_eq!(harness.state().settings().lights[0].position, orbited.lights[0].position);
 }
 
-/// The first button goes down or up.
+/// Event of pressing or releasing the primary button.
 fn button(pos: egui::Pos2, pressed: bool) -> Event {
     Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE }
 }
 
-/// A finger or a pen comes from nowhere: it is never above a handle before it presses it.
+/// Handles react to a finger or pen, which never hovers over a handle before it presses it.
 #[test]
 fn handles_are_taken_without_hovering() {
     let mut harness = window();
@@ -86,7 +86,7 @@ fn handles_are_taken_without_hovering() {
     assert_eq!(after.camera, before.camera);
 }
 
-/// Whatever is pressed is what is dragged, however far the pointer has gone when the next frame begins.
+/// A flick drags what was pressed, however far the pointer has moved when the next frame begins.
 #[test]
 fn what_is_flicked_within_a_frame_is_what_was_pressed() {
     let mut harness = slow_window(vec2(760.0, 1140.0));
@@ -100,7 +100,7 @@ fn what_is_flicked_within_a_frame_is_what_was_pressed() {
         assert_ne!(after, before, "{what} stayed");
         (before, after)
     };
-    // A number of the panel, by its slider.
+    // A number of the panel is dragged by its slider.
     let (before, after) = flicks_slider(&mut harness);
     assert_ne!(after, before);
     let (before, after) = flicks(&mut harness, "Light handle Key", vec2(-60.0, 45.0));
@@ -119,7 +119,7 @@ fn what_is_flicked_within_a_frame_is_what_was_pressed() {
     wait_until_idle(&mut harness);
 }
 
-/// The strength of shadows before and after its slider was flicked.
+/// Flicks the slider of the shadow strength, and returns the strength before and after.
 fn flicks_slider(harness: &mut Harness<'static, App>) -> (f64, f64) {
     let strength = |harness: &Harness<'_, App>| harness.state().settings().shadows.strength;
     let before = strength(harness);
@@ -128,14 +128,14 @@ fn flicks_slider(harness: &mut Harness<'static, App>) -> (f64, f64) {
     (before, strength(harness))
 }
 
-/// Strokes that come together are as many: each takes one step back.
+/// Key strokes that arrive within one frame are all counted: each undoes one step.
 #[test]
 fn keys_that_are_struck_within_a_frame_are_counted() {
     let mut harness = slow_window(vec2(760.0, 1140.0));
     let before = harness.state().settings().clone();
     for _ in 0..3 {
         harness.key_press(egui::Key::CloseBracket);
-        // Longer than changes of one step may lie apart.
+        // Longer than the interval within which changes are merged into one undo step.
         harness.run_steps(12);
     }
     assert!(harness.state().settings().lights[0].intensity > 1.3 * before.lights[0].intensity);
@@ -183,7 +183,7 @@ fn hoods_are_opened_by_their_rim() {
     harness.run_steps(3);
     let angle = |harness: &Harness<'_, App>| harness.state().settings().lights[0].hood.half_angle_deg;
     let before = angle(&harness);
-    // Where the handle is depends on what the picture shows of the cone.
+    // The direction of the handle depends on how the picture shows the cone.
     let mut changes = Vec::new();
     for by in [vec2(24.0, 0.0), vec2(-24.0, 0.0), vec2(0.0, 24.0), vec2(0.0, -24.0)] {
         let handle = harness.get_by_label("Spotlight handle Key").rect().center();
@@ -199,7 +199,8 @@ fn hoods_are_opened_by_their_rim() {
     wait_until_idle(&mut harness);
 }
 
-/// Of a parallel light, which is shown on a sphere around the volume: others may stand outside of the picture.
+/// Size handle of a parallel light, which is shown on a sphere around the volume; handles of other lights may be
+/// outside the picture.
 #[test]
 fn lights_grow_by_their_borders() {
     let mut harness = window();
@@ -215,7 +216,7 @@ fn lights_grow_by_their_borders() {
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
     harness.run_steps(3);
     assert_eq!(angle(&harness), before, "a drag is a step");
-    // Far beyond the middle: as narrow as can be, and there to be grabbed again.
+    // A drag far beyond the middle gives the smallest size, and the handle can still be grabbed.
     drag(&mut harness, handle, (middle - handle) * 3.0);
     harness.run_steps(2);
     assert!(angle(&harness) < before && angle(&harness) > 0.0, "{}", angle(&harness));
@@ -240,7 +241,7 @@ fn the_probe_says_what_light_arrives() {
     assert!(before == after, "and gone again");
 }
 
-/// Escape takes everything back to where a drag began: a light, the camera, what an editor's hand has changed.
+/// Escape reverts a drag to its beginning: of a light, of the camera, or of a freehand curve.
 #[test]
 fn escape_ends_a_drag_where_it_began() {
     let mut harness = window();
@@ -273,7 +274,7 @@ fn escape_ends_a_drag_where_it_began() {
     wait_until_idle(&mut harness);
 }
 
-/// Escape closes the windows over the picture, the highest first.
+/// Escape closes the windows over the picture, the topmost first.
 #[test]
 fn escape_closes_windows_one_by_one() {
     let mut harness = window();

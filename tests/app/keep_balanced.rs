@@ -1,4 +1,4 @@
-//! The balance that follows changes, in the settings, the picture and the history.
+//! Tests of the kept balance: it follows changes in the settings, the picture and the undo history.
 
 use chiaroscuro::app::{App, Options};
 use chiaroscuro::gpu::balance_quickly;
@@ -21,7 +21,7 @@ fn a_balance_that_is_kept_follows_changes() {
         ..Options::default()
     };
     let mut harness = window_with(options, Vec2::new(760.0, 1100.0));
-    // Without marks over the picture.
+    // Without overlays on the picture.
     harness.key_press(egui::Key::G);
     harness.run_steps(10);
     let first = harness.state().settings().clone();
@@ -44,7 +44,7 @@ fn a_balance_that_is_kept_follows_changes() {
     assert_eq!(harness.state().settings(), &followed, "its own change is none");
     assert!(shown == render(&harness, size).shown);
 
-    // One step takes back both, and nothing follows that.
+    // One undo step reverts the change and the balance, and no new measurement follows.
     undo(&mut harness, Modifiers::COMMAND);
     assert_eq!(harness.state().settings(), &first);
     wait_until_idle(&mut harness);
@@ -53,7 +53,7 @@ fn a_balance_that_is_kept_follows_changes() {
     undo(&mut harness, Modifiers::COMMAND.plus(Modifiers::SHIFT));
     assert_eq!(harness.state().settings(), &followed);
 
-    // A balance by hand stays.
+    // A balance set by hand is kept.
     harness.get_by_role_and_label(Role::Slider, "Balance").set_value_accesskit(2.0);
     harness.run_steps(10);
     wait_until_idle(&mut harness);

@@ -1,4 +1,4 @@
-//! What the program proposes: lights that come after the first picture, places for a light, whole looks.
+//! Tests of proposed looks: lights found after the first picture, light positions, and whole looks.
 
 use std::time::{Duration, Instant};
 
@@ -22,7 +22,7 @@ fn wait_for(harness: &mut Harness<'_, App>, label: &str) {
         harness.step();
         std::thread::sleep(Duration::from_millis(5));
     }
-    // The window grows around them.
+    // The window grows around the pictures.
     harness.run_steps(5);
 }
 
@@ -39,7 +39,7 @@ fn the_light_of_a_first_look_is_sought_and_is_no_step_to_undo() {
     let Settings { lights, floor, .. } = found.apply(&first);
     let shown = harness.state().settings().clone();
     assert_eq!((&shown.lights, &shown.floor), (&lights, &floor), "what the search finds by itself");
-    // The command line waits for it, and comes to the same look; its brightness is measured with all voxels.
+    // The command line waits for the search and arrives at the same look; its brightness is measured with all voxels.
     let open = [Open::Lights, Open::Floor, Open::Balance, Open::Exposure];
     let waited = finish_look(&mut renderer, &dataset, &first, &open).expect("a look");
     assert_eq!((&waited.lights, &waited.floor), (&lights, &floor));
@@ -57,7 +57,7 @@ fn lights_that_are_found_stay_when_a_turn_is_undone() {
     let mut harness = untouched_window(options);
     wait_until(&mut harness, "never opened", |app| app.volume_name().is_some());
     let first = harness.state().settings().clone();
-    // Lights are sought while it is turned: a step of its own.
+    // Lights are searched for while the camera is turned: an undo step of its own.
     harness.key_press(egui::Key::Num3);
     wait_until(&mut harness, "never turned", |app| app.settings().camera != first.camera);
     let turned = harness.state().settings().camera.clone();
@@ -101,7 +101,7 @@ fn looks_are_tried_on_the_volume() {
     harness.key_press(egui::Key::V);
     harness.run_steps(3);
     wait_for(&mut harness, "Use 1 · First look");
-    // The others follow one by one.
+    // The other looks follow one by one.
     wait_for(&mut harness, "Refresh");
     let count = harness.query_all_by_label_contains("Use ").count();
     assert!([8, 10].contains(&count), "{count} looks");
@@ -120,7 +120,7 @@ fn looks_are_tried_on_the_volume() {
 #[test]
 fn looks_that_were_tried_are_forgotten_with_their_volume() {
     let mut harness = window();
-    // As a key that is held repeats.
+    // Like the repeats of a held key.
     for _ in 0..8 {
         harness.key_press(egui::Key::V);
         harness.step();
@@ -132,7 +132,7 @@ fn looks_that_were_tried_are_forgotten_with_their_volume() {
     assert_eq!(harness.query_all_by_label_contains("Use 1").count(), 0, "it was of the volume before");
 }
 
-/// A little CT: a ball of bone in one of water, in air.
+/// Small CT: a ball of bone in a ball of water, in air.
 fn ct(folder: &std::path::Path) -> std::path::PathBuf {
     let mut file =
         "NRRD0004\ntype: int16\ndimension: 3\nsizes: 24 24 24\nspacings: 4 4 4\nendian: little\nencoding: raw\nsample units: \"HU\"\n\n".as_bytes().to_vec();
@@ -153,7 +153,7 @@ fn ct(folder: &std::path::Path) -> std::path::PathBuf {
     path
 }
 
-/// What is looked for in a CT is offered over its picture, and over no other, until somebody closes that.
+/// CT looks are offered over the picture of a CT, and over no other, until the user closes the offer.
 #[test]
 fn looks_of_a_ct_are_offered_over_its_picture() {
     assert!(window().query_by_label("Lung").is_none());

@@ -1,4 +1,4 @@
-//! The real window, driven without a display: pointer, keys and widgets by their names.
+//! Tests of the real window without a display: pointer and keyboard events, and widgets found by their names.
 
 mod cuts;
 mod editor;

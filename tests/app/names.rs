@@ -1,5 +1,4 @@
-//! Every widget has a name that a screen reader can say: in the panels with all their sections, in every menu
-//! and in every window.
+//! Accessibility tests: every widget in panels, menus and windows has a name for screen readers.
 
 use chiaroscuro::app::App;
 use eframe::egui::{self, Key, Modifiers, Role, Vec2};
@@ -8,17 +7,17 @@ use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::{click, turn_wheel, wait_until, window};
 
-/// All sections unfolded, and a window that is tall enough for them: nothing is scrolled away.
+/// Creates a window with all sections expanded, tall enough that nothing is scrolled out of view.
 pub(crate) fn unfolded(width: f32) -> Harness<'static, App> {
     let mut harness = window();
-    // From far away: of a picture that high, that much less is to be rendered.
+    // Zoomed out: in a picture that high, less has to be rendered.
     let (picture, _) = harness.state().viewport_rect().expect("a picture");
     harness.hover_at(picture.center());
     harness.step();
     turn_wheel(&harness, -4000.0);
     harness.run_steps(8);
     harness.remove_cursor();
-    // Pictures of a window that high are larger than egui assumes to be safe.
+    // Pictures of such a high window exceed the texture size that egui assumes to be safe.
     harness.input_mut().max_texture_side = Some(8192);
     harness.set_size(Vec2::new(width, 3700.0));
     harness.run_steps(3);
@@ -26,7 +25,7 @@ pub(crate) fn unfolded(width: f32) -> Harness<'static, App> {
         click(&mut harness, section);
         harness.run_steps(8);
     }
-    // A section that is unfolded has another further down.
+    // A section that is expanded contains another one further down.
     for at in 0..harness.get_all_by_label("Advanced").count() {
         harness.get_all_by_label("Advanced").nth(at).expect("as many as before").click();
         harness.run_steps(8);
@@ -36,7 +35,7 @@ pub(crate) fn unfolded(width: f32) -> Harness<'static, App> {
     harness
 }
 
-/// Fails if any widget has no name, and says which, and where.
+/// Fails if a widget has no name, listing all of them.
 fn check(harness: &Harness<'_, App>, place: &str) {
     let unnamed = harness.unnamed_widgets();
     assert!(unnamed.is_empty(), "{place}: {unnamed:#?}");
@@ -47,7 +46,7 @@ fn press(harness: &mut Harness<'_, App>, modifiers: Modifiers, key: Key) {
     harness.run_steps(6);
 }
 
-/// The menu bar comes first: other buttons may have the same name.
+/// Opens a menu; the menu bar comes first, since other buttons may have the same name.
 fn open_menu(harness: &mut Harness<'_, App>, name: &str) {
     harness.get_all_by_label(name).next().expect("a menu").click();
     harness.run_steps(6);
@@ -80,7 +79,7 @@ fn every_widget_has_a_name() {
         press(&mut harness, Modifiers::NONE, Key::Escape);
     }
     for (modifiers, key, what) in [
-        // Before letters are for a text.
+        // Before dialogs that take letters as text.
         (Modifiers::NONE, Key::D, "slices"),
         (Modifiers::COMMAND, Key::E, "the export window"),
         (Modifiers::COMMAND, Key::L, "the window for a path"),
@@ -100,7 +99,7 @@ fn every_widget_has_a_name() {
     }
 }
 
-/// The check itself: a button without a name is found.
+/// Guards the check itself: a button without a name is found.
 #[test]
 fn nameless_widgets_are_found() {
     let harness = Harness::builder().with_accessibility_check(false).build_ui(|ui| {

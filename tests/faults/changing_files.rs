@@ -1,4 +1,4 @@
-//! Volumes that somebody cuts, overwrites, replaces or removes while they are read.
+//! Tests of volumes that another process truncates, overwrites, replaces or removes while they are read.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{Seek as _, SeekFrom, Write as _};
@@ -10,15 +10,15 @@ use chiaroscuro::data::open;
 
 use crate::random::Random;
 
-/// 32 MiB: long enough to be met in the middle.
+/// Edge in voxels; 32 MiB, long enough to be changed during the read.
 const EDGE: usize = 256;
 
-/// The data of a volume of one value.
+/// Voxel data of a constant volume.
 fn data(value: u8) -> Vec<u8> {
     vec![value; EDGE * EDGE * EDGE * 2]
 }
 
-/// What may happen to a file.
+/// Change of a file during the read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Change {
     Cut,
@@ -38,7 +38,7 @@ impl Change {
             }
             Self::Overwritten => {
                 let mut file = OpenOptions::new().write(true).open(path).expect("it is there");
-                // From the end, so that a reader must meet it.
+                // From the end, so that a reader must encounter it.
                 file.seek(SeekFrom::Start(other.len() as u64 / 2)).expect("it is long");
                 file.write_all(&other[other.len() / 2..]).expect("room");
             }
@@ -52,7 +52,7 @@ impl Change {
     }
 }
 
-/// Changes so many files, each at a time of chance of its reading.
+/// Changes files a number of times, each at a random time of the read.
 fn change(count: usize) {
     let folder = tempfile::tempdir().expect("a folder");
     let name = format!("v_{EDGE}x{EDGE}x{EDGE}_uint16");
@@ -84,7 +84,7 @@ fn change(count: usize) {
             loader.join().expect("no panic")
         });
         match result {
-            // As a whole what was there, or what is there now.
+            // Either all of the old data or all of the new.
             Ok(volume) => {
                 let id = volume.content_id();
                 assert!(id == old || (id == new && change == Change::Replaced), "{change:?} mixes");

@@ -1,4 +1,4 @@
-//! Writers that are killed in the middle: what was there stays whole, and nothing is left for good.
+//! Tests of writers that are killed while writing: existing files stay whole, and no temporary file remains for good.
 
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -17,8 +17,7 @@ fn start(folder: &Path, args: &str) -> Child {
         .expect("the program can be started")
 }
 
-/// Kills a command that writes files again and again, each time somewhere in the middle; the files are always what
-/// it makes, whole.
+/// Kills a command that writes files repeatedly, each time at another moment; the files always stay complete.
 fn killed(args: &str, files: &[&str], kills: usize) {
     let folder = tempfile::tempdir().expect("a folder");
     let read = || files.iter().map(|file| std::fs::read(folder.path().join(file))).collect::<Vec<_>>();
@@ -46,7 +45,7 @@ fn killed(args: &str, files: &[&str], kills: usize) {
     assert_eq!(left.len(), files.len(), "{left:?}");
 }
 
-/// The writers of the command line. A report holds times, which differ.
+/// Kills the writers of the command line. A report is not among them, since it contains times.
 fn all(kills: usize) {
     killed("render builtin:sphere:16 --size 64x48 -o p.png", &["p.png"], kills);
     killed("render builtin:sphere:16 --size 64x48 -o p.exr", &["p.exr"], kills);

@@ -1,4 +1,4 @@
-//! Volumes that are opened and closed again, or given up in the middle: nothing is left of them.
+//! Leak tests of volumes that are opened and closed again, or cancelled while loading.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -11,31 +11,31 @@ use chiaroscuro::model::auto;
 use crate::random::Random;
 use crate::samples::samples;
 
-/// Opens after which caches and pools are full.
+/// Number of opens after which caches and pools are full.
 const WARM_UP: usize = 50;
 
-/// What memory may grow by from then on, of what there was: the bar that programs for data of this size are held to.
+/// Largest relative growth of memory from then on, as demanded of programs for data of this size.
 const MAX_GROWTH: f64 = 0.02;
 
-/// Pages that an allocator may keep or not, whatever is done.
+/// Memory in bytes that an allocator may or may not keep, regardless of leaks.
 const SLACK: u64 = 2 << 20;
 
-/// Longest that anything may go on after it was given up, on a busy machine; the figure is printed.
+/// Longest time from a cancellation to the end of the load, on a busy machine; the figure is printed.
 const PROMPT: Duration = Duration::from_secs(2);
 
-/// Bytes in memory, where the system says.
+/// Resident memory in bytes, where the system reports it.
 fn resident_bytes() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = text.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
     Some(line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? << 10)
 }
 
-/// Files that are open, where the system says.
+/// Number of open files, where the system reports it.
 fn open_files() -> Option<usize> {
     Some(std::fs::read_dir("/proc/self/fd").ok()?.count())
 }
 
-/// Volumes of several sizes and kinds, one of them not valid.
+/// Writes volumes of several sizes and kinds, one of them invalid.
 fn files(folder: &Path) -> Vec<PathBuf> {
     let write = |name: &str, bytes: &[u8]| {
         let path = folder.join(name);
@@ -58,7 +58,7 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// Opens and shows so many volumes, one after the other.
+/// Opens and renders a number of volumes, one after another.
 fn open_and_close(count: usize) {
     let folder = tempfile::tempdir().expect("a folder");
     let files = files(folder.path());
@@ -74,7 +74,7 @@ fn open_and_close(count: usize) {
         let dataset = Dataset::new(volume);
         let settings = auto::first_settings(dataset.volume(), dataset.histogram());
         renderer.render(&dataset, &settings, [16, 12], &RenderOptions::default()).expect("a picture");
-        // Each time after the same volume.
+        // Measured each time after the same volume.
         if at % files.len() == 0 {
             let now = (resident_bytes(), open_files(), renderer.gpu_bytes());
             if at >= WARM_UP && settled.is_none() {
@@ -93,8 +93,8 @@ fn open_and_close(count: usize) {
     assert!(refused * files.len() >= count / 2, "one of each round is not valid");
 }
 
-/// Gives up so many opens, each at a place of chance: every second when so much has been read, the others after so much of
-/// the time that it usually takes.
+/// Cancels a number of loads at random points: every second one after a number of bytes, the others after a share of
+/// the usual duration.
 fn give_up(count: usize) {
     let folder = tempfile::tempdir().expect("a folder");
     let edge = 256;

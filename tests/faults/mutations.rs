@@ -1,5 +1,5 @@
-//! Every reader on valid files with a few bytes changed, cut or put in: it accepts or refuses, but does not panic, hang
-//! or take memory without end.
+//! Mutation tests: every reader on valid files with a few bytes changed, removed or inserted. It accepts or refuses
+//! them, but does not panic, hang or allocate without limit.
 
 use std::panic::catch_unwind;
 use std::path::Path;
@@ -8,10 +8,10 @@ use std::time::{Duration, Instant};
 use crate::random::Random;
 use crate::samples::{Sample, samples};
 
-/// Longest that a tiny file may take, on a busy machine.
+/// Longest time for a tiny file, on a busy machine.
 const PROMPT: Duration = Duration::from_secs(10);
 
-/// Texts that have meant something to somebody's reader.
+/// Texts that have special meanings in some reader.
 const WORDS: [&[u8]; 10] = [
     b"-1",
     b"0",
@@ -25,7 +25,7 @@ const WORDS: [&[u8]; 10] = [
     b"../../../etc/passwd",
 ];
 
-/// A file with up to eight changes.
+/// Copy of a file with up to eight random changes.
 fn mutated(bytes: &[u8], random: &mut Random) -> Vec<u8> {
     let mut changed = bytes.to_vec();
     for _ in 0..=random.below(8) {
@@ -49,7 +49,7 @@ fn mutated(bytes: &[u8], random: &mut Random) -> Vec<u8> {
     changed
 }
 
-/// Reads a file, which must neither panic nor take long. Whether it was accepted, and how long it took.
+/// Reads a file, which must neither panic nor take long; returns whether it was accepted, and the duration.
 fn tried(path: &Path, read: fn(&Path) -> bool, what: &str) -> (bool, Duration) {
     let begin = Instant::now();
     let result = catch_unwind(|| read(path));
@@ -58,7 +58,7 @@ fn tried(path: &Path, read: fn(&Path) -> bool, what: &str) -> (bool, Duration) {
     (result.unwrap_or_else(|_| panic!("{what} panics")), took)
 }
 
-/// Tries so many mutations of each kind.
+/// Tries a number of mutations of each kind of file.
 fn mutations(of_each: u64) {
     let folder = tempfile::tempdir().expect("a folder");
     for Sample { name, bytes, read } in samples(folder.path()) {
@@ -86,7 +86,7 @@ fn a_thousand_damaged_files_of_each_kind() {
     mutations(1000);
 }
 
-/// `found/READER/` keeps what `script/fuzz` has found and, for each reader, an input that got far into it.
+/// `found/READER/` contains inputs found by `script/fuzz` and, for each reader, an input that got far into it.
 #[test]
 fn what_was_found_is_mended() {
     let found = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/faults/found");

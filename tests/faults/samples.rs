@@ -1,4 +1,4 @@
-//! A valid file of every kind that is read, and its reader.
+//! Sample files: a valid file of every readable kind, with its reader.
 
 use std::io::Write as _;
 use std::path::Path;
@@ -11,16 +11,16 @@ use chiaroscuro::model::{
     Depth, EXPORTED, ImageSpec, PRESETS, Record, Settings, VolumeRecord, export, import,
 };
 
-/// A kind of file.
+/// Valid file of one kind.
 pub(crate) struct Sample {
-    /// Its name, with the ending that says the kind.
+    /// File name, whose extension states the kind.
     pub(crate) name: String,
     pub(crate) bytes: Vec<u8>,
-    /// Reads such a file as the program does; whether it was accepted.
+    /// Reads such a file like the program; returns true if it was accepted.
     pub(crate) read: fn(&Path) -> bool,
 }
 
-/// Values of computed tomography, for which the preset is.
+/// Value range of computed tomography, which the preset is for.
 fn range() -> ValueRange {
     ValueRange::new(-1000.0, 3000.0)
 }
@@ -29,7 +29,7 @@ fn volume(path: &Path) -> bool {
     open(path, &LoadOptions::default(), &LoadControl::new()).is_ok()
 }
 
-/// As a look of a session, of a preset or in a picture.
+/// Reads a look from a session, a preset or a picture; returns true if it was accepted.
 fn look(text: Option<String>) -> bool {
     let record = text.and_then(|text| Record::read(&text).ok());
     record.is_some_and(|record| {
@@ -47,12 +47,12 @@ fn picture(path: &Path) -> bool {
     picture_size(path).is_ok() && read_picture(path).is_ok() && has_look
 }
 
-/// A GIF or a video, of which only the look is read.
+/// Reads a GIF or a video, of which only the look is read.
 fn carried(path: &Path) -> bool {
     look(read_record(path).ok().flatten())
 }
 
-/// A video with a record behind what players read.
+/// Video with a record after the boxes that players read.
 fn film(record: &str) -> Vec<u8> {
     let part = |kind: &[u8; 4], parts: &[&[u8]]| {
         let length = 8 + parts.iter().map(|part| part.len()).sum::<usize>();
@@ -68,15 +68,15 @@ fn transfer(path: &Path) -> bool {
     import(path, &bytes, range()).is_ok()
 }
 
-/// Names of files, with what `found/NAME/far` holds.
+/// File names, with the contents of `found/NAME/far`.
 macro_rules! kept {
     ($($name:literal),+ $(,)?) => {
-        // Part of the program: the fuzz target, which has these samples too, is of another package.
+        // Embedded, because the fuzz target, which uses these samples as well, is in another package.
         [$(($name, include_bytes!(concat!("found/", $name, "/far")).as_slice())),+]
     };
 }
 
-/// Files of other programs, which take a program to write, each one that is valid.
+/// Valid files of other programs, which cannot be generated here in a few lines.
 const KEPT: [(&str, &[u8]); 43] = kept![
     "packed.nrrd",
     "digits.nrrd",
@@ -123,7 +123,7 @@ const KEPT: [(&str, &[u8]); 43] = kept![
     "units.fits.gz",
 ];
 
-/// The files of other programs, by their names.
+/// Files of other programs, by their names.
 pub(crate) fn kept() -> Vec<(&'static str, Vec<u8>)> {
     KEPT.map(|(name, bytes)| (name, bytes.to_vec())).to_vec()
 }
@@ -134,7 +134,7 @@ pub(crate) fn gzip(bytes: &[u8]) -> Vec<u8> {
     encoder.finish().expect("it is in memory")
 }
 
-/// One of each kind.
+/// Generates one sample of each kind.
 pub(crate) fn samples(folder: &Path) -> Vec<Sample> {
     let mut found = Vec::new();
     let mut add =
@@ -153,7 +153,7 @@ pub(crate) fn samples(folder: &Path) -> Vec<Sample> {
     for (name, bytes) in kept() {
         add(name, bytes, volume);
     }
-    // What headers and descriptions are of.
+    // Data files of headers and descriptions.
     std::fs::write(folder.join("described.raw"), [7; 24]).expect("room");
     std::fs::write(folder.join("listed.raw"), [7; 6 * 5 * 4]).expect("room");
 

@@ -1,4 +1,4 @@
-//! What is asked of a volume and of the first look at it.
+//! Checks of a real volume and of its first look.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use chiaroscuro::model::auto;
 
 use crate::manifest::{Facts, manifest};
 
-/// Files of a folder with one of these endings, in order.
+/// Files of a folder with one of these extensions, sorted.
 pub(crate) fn files(folder: &Path, endings: &[&str]) -> Vec<PathBuf> {
     let mut found: Vec<_> = fs::read_dir(folder)
         .unwrap_or_else(|err| panic!("{}: {err}", folder.display()))
@@ -26,7 +26,7 @@ pub(crate) fn open(path: &Path, raw: RawFormat) -> Result<Volume, LoadError> {
     load(path, &LoadOptions { raw, ..LoadOptions::default() }, &LoadControl::new())
 }
 
-/// All that differs between a volume and what is known of its file.
+/// All differences between a volume and the known facts about its file.
 fn differences(volume: &Volume, facts: &Facts) -> Vec<String> {
     let mut found = Vec::new();
     if facts.dims.is_some_and(|dims| dims != volume.dims()) {
@@ -53,7 +53,7 @@ fn differences(volume: &Volume, facts: &Facts) -> Vec<String> {
     found
 }
 
-/// All that is wrong with the first look at a volume.
+/// All faults of the first look at a volume.
 fn first_look_flaws(volume: &Volume) -> Vec<String> {
     let settings = auto::first_settings(volume, &Histogram::of(volume));
     let mut found = Vec::new();
@@ -61,7 +61,7 @@ fn first_look_flaws(volume: &Volume) -> Vec<String> {
     if !values.windows(2).all(|pair| pair[0] <= pair[1]) {
         found.push(format!("control points do not ascend: {values:?}"));
     }
-    // As pictures show it: what is missing is not there, and values beyond the range are the nearest in it.
+    // As pictures show it: missing voxels are left out, and values beyond the range are clamped to it.
     let shown = volume.showing(settings.shown_range(&volume.ranges()));
     let [nx, ny, nz] = shown.dims();
     let places = (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])));
@@ -72,8 +72,8 @@ fn first_look_flaws(volume: &Volume) -> Vec<String> {
     }
     let share = visible as f64 / there as f64;
     println!("{}: {:.1} % of the voxels are visible", volume.name(), share * 100.0);
-    // Less is a picture of nothing; more than two thirds is a block without a shape. (The
-    // Marschner–Lobb signal fills more of its cube than any scan.)
+    // A smaller share is an empty picture; more than two thirds is a shapeless block. (The Marschner–Lobb signal
+    // fills more of its cube than any scan.)
     if !(0.005..=0.667).contains(&share) {
         found.push(format!("{:.2} % of the voxels are visible, 0.5 % to 67 % expected", share * 100.0));
     }
@@ -83,7 +83,7 @@ fn first_look_flaws(volume: &Volume) -> Vec<String> {
     found
 }
 
-/// Loads files as the manifest describes them; the volumes, or all that is wrong.
+/// Loads files as the manifest describes them; returns the volumes, or fails with all differences.
 pub(crate) fn load_all(folder: &Path, paths: &[PathBuf]) -> Vec<Volume> {
     let facts = manifest(folder);
     let (mut volumes, mut wrong) = (Vec::new(), Vec::new());
@@ -93,7 +93,7 @@ pub(crate) fn load_all(folder: &Path, paths: &[PathBuf]) -> Vec<Volume> {
             wrong.push(format!("{name} is not in the manifest"));
             continue;
         };
-        // A RAW file cannot say its spacing.
+        // A RAW file cannot state its spacing.
         let is_raw = path.extension().is_some_and(|ending| ending == "raw");
         let spacing_mm = if is_raw { facts.spacing_mm } else { None };
         match open(path, RawFormat { spacing_mm, ..RawFormat::default() }) {

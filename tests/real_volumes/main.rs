@@ -1,8 +1,8 @@
-//! Volumes as they come from scanners and other programs, where there are any: they load as they should, and their
-//! first look shows something. The built-in volumes are checked everywhere.
+//! Tests of real volumes from scanners and other programs, if available: they load correctly, and their first look
+//! shows something. The built-in volumes are checked everywhere.
 //!
-//! The files are in the folder that `CHIAROSCURO_TEST_DATA` names, else in `../shared/data`, with `MANIFEST.tsv`
-//! saying what each of them is. Where they are not, their tests are ignored and say why.
+//! The files are in the folder that `CHIAROSCURO_TEST_DATA` names, else in `../shared/data`, described by
+//! `MANIFEST.tsv`. Without them their tests are ignored and say why.
 
 #![expect(clippy::print_stdout, reason = "tests say what they measured, and the harness how they went")]
 
@@ -23,10 +23,10 @@ use chiaroscuro::model::auto;
 use checks::{assert_good_first_looks, files, load_all, open};
 use harness::Trial;
 
-/// The variable that names the folder of the data.
+/// Environment variable that names the folder of the data.
 const FOLDER: &str = "CHIAROSCURO_TEST_DATA";
 
-/// Where the data are looked for.
+/// Folder of the test data.
 fn data() -> PathBuf {
     let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data");
     std::env::var_os(FOLDER).map_or_else(|| beside.into(), PathBuf::from)
@@ -112,7 +112,7 @@ fn one_volume_is_the_same_in_every_form(folder: &Path) {
     }
 }
 
-/// Volumes of each kind, by the names of their files; all others are scalar.
+/// Files of each kind of data, by name; all others are scalar.
 const KINDS: [(KindName, &[&str]); 4] = [
     (KindName::LabelMap, &["aal_labels", "ctchest_seg", "platynereis_labels", "torso_labels"]),
     (KindName::Signed, &["cn9_homo", "f_orbital", "narps_zmap", "seismic_ex2", "spmMotor", "spmMotor_nan"]),

@@ -1,10 +1,10 @@
-//! What `MANIFEST.tsv` says of the files beside it.
+//! Parser of `MANIFEST.tsv`, which describes the test data.
 
 use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
-/// What the manifest says of a file; each part only where it is said.
+/// Facts about a file in the manifest; `None` where it states nothing.
 #[derive(Debug, Default)]
 pub(crate) struct Facts {
     pub(crate) dims: Option<[usize; 3]>,
@@ -12,7 +12,7 @@ pub(crate) struct Facts {
     pub(crate) spacing_mm: Option<[f64; 3]>,
 }
 
-/// Facts by the path of the file.
+/// Facts of all files, by path.
 pub(crate) fn manifest(folder: &Path) -> HashMap<String, Facts> {
     let text = fs::read_to_string(folder.join("MANIFEST.tsv")).expect("the manifest is text");
     text.lines()
@@ -30,7 +30,7 @@ pub(crate) fn manifest(folder: &Path) -> HashMap<String, Facts> {
         .collect()
 }
 
-/// `256x256x108`; a picture has one slice.
+/// Parses dimensions such as `256x256x108`; a picture has one slice.
 fn dims(text: &str) -> Option<[usize; 3]> {
     let numbers: Option<Vec<usize>> = text.split('x').map(|number| number.parse().ok()).collect();
     match numbers?[..] {
@@ -40,7 +40,7 @@ fn dims(text: &str) -> Option<[usize; 3]> {
     }
 }
 
-/// `int16` or `16-bit signed integer`.
+/// Parses a voxel type such as `int16` or `16-bit signed integer`.
 fn voxel_type(text: &str) -> Option<String> {
     let bits = || text.split('-').next().unwrap_or_default();
     if text.ends_with("unsigned integer") {
@@ -52,7 +52,7 @@ fn voxel_type(text: &str) -> Option<String> {
     }
 }
 
-/// `0.957x0.957x1.5`, `(1.0, 1.0, 1.4) …` or `0.0156 iso …`.
+/// Parses a spacing such as `0.957x0.957x1.5`, `(1.0, 1.0, 1.4) …` or `0.0156 iso …`.
 fn spacing(text: &str) -> Option<[f64; 3]> {
     if let Some((edge, _)) = text.split_once(" iso") {
         return edge.parse().ok().map(|edge| [edge; 3]);

@@ -1,4 +1,5 @@
-//! What independent libraries have found in files, by the tables in `tests/oracle/`, and whether we find the same.
+//! Comparison with independent readers: values that other libraries read from files, in the tables of
+//! `tests/oracle/`.
 
 use std::path::{Path, PathBuf};
 
@@ -7,49 +8,49 @@ use chiaroscuro::data::load::{Choice, LoadControl, LoadError, LoadErrorKind, Loa
 use flate2::Crc;
 use glam::DVec3;
 
-/// How far an affine may be off, as a share of the step that it is: headers of `NIfTI` and MRC have 24 bits.
+/// Tolerance of an affine, as a share of its largest step: headers of `NIfTI` and MRC have 24 bits.
 const SAME_PLACE: f64 = 1e-6;
 
-/// How far a mean may be off, as a share of the largest value: sums of millions in another order.
+/// Tolerance of a mean, as a share of the largest value: millions are summed in another order.
 const SAME_MEAN: f64 = 1e-9;
 
-/// The share of voxels that decoders may round differently where values are packed with loss: up to 6 % were found for
-/// JPEG and JPEG 2000.
+/// Share of voxels that decoders may round differently after lossy compression: up to 6 % were found for JPEG and
+/// JPEG 2000.
 const ROUNDED: f64 = 0.1;
 
-/// The largest file that is kept here.
+/// Size of the largest file in the repository, in bytes.
 const MOST_BYTES: u64 = 4096;
 
-/// The file holds no volume.
+/// Voxel type in the table of a file without a volume.
 const REFUSED: &str = "refused";
 
-/// A row: what is said of a file, by the columns of its table.
+/// Row of a table: facts about a file, by column.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Row {
     pub(crate) file: String,
-    /// Which volume is meant, as options of the command line; or why there is none, in words of the message.
+    /// Choice of the volume, as options of the command line; or the reason for a refusal, in words of the message.
     pub(crate) choice: String,
     pub(crate) dims: String,
     pub(crate) voxel_type: String,
-    /// `body`, `world` (a place, but no body's) or `voxels` (nobody knows how large they are).
+    /// Space of the affine: `body`, `world` (millimetres, not anatomical) or `voxels` (unknown size).
     pub(crate) space: String,
     /// Three rows of four numbers: index to right-anterior-superior millimetres.
     pub(crate) affine: Vec<f64>,
     pub(crate) min: f64,
     pub(crate) max: f64,
     pub(crate) mean: f64,
-    /// Of the voxels in their type, little-endian, x fastest.
+    /// Checksum of the voxels in their type, little-endian, x fastest.
     pub(crate) crc32: String,
-    /// How far values may be off that were packed with loss.
+    /// Tolerance of values after lossy compression.
     pub(crate) tolerance: f64,
 }
 
-/// The folder of the tables.
+/// Folder of the tables.
 pub(crate) fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/oracle")
 }
 
-/// The rows of a table.
+/// Reads the rows of a table.
 pub(crate) fn table(name: &str) -> Vec<Row> {
     let path = folder().join(name);
     let text = std::fs::read_to_string(&path).unwrap_or_else(|err| panic!("{}: {err}", path.display()));
@@ -79,7 +80,7 @@ fn row(line: &str) -> Row {
     }
 }
 
-/// Which volume is meant.
+/// Parses the choice of a volume.
 fn choice(said: &str) -> Choice {
     let mut choice = Choice::default();
     let words: Vec<&str> = said.split(' ').collect();
@@ -103,7 +104,7 @@ pub(crate) fn open(folder: &Path, row: &Row) -> Result<Volume, LoadError> {
     load(&folder.join(&row.file), &options, &LoadControl::new())
 }
 
-/// The row of a volume, with the file, the choice and the tolerance of another.
+/// Row of a loaded volume, with the file, choice and tolerance of another row.
 fn row_of(volume: &Volume, said: &Row) -> Row {
     let samples = volume.samples();
     let voxel_type = samples.voxel_type();
@@ -143,7 +144,7 @@ fn row_of(volume: &Volume, said: &Row) -> Row {
     }
 }
 
-/// Whether two affines are the same but for how their numbers were rounded.
+/// Returns true if two affines agree up to rounding.
 fn same_place(found: &[f64], said: &[f64]) -> bool {
     let column = |of: &[f64], at: usize| DVec3::new(of[at], of[at + 4], of[at + 8]);
     let step = |of: &[f64]| (0..3).map(|at| column(of, at).length()).fold(0.0, f64::max);
@@ -156,7 +157,7 @@ fn same_place(found: &[f64], said: &[f64]) -> bool {
         })
 }
 
-/// The columns in which two rows differ, with both.
+/// Columns in which two rows differ, with both values.
 fn differing(found: &Row, said: &Row) -> Vec<String> {
     let largest = said.min.abs().max(said.max.abs());
     let near = |a: f64, b: f64, by: f64| (a - b).abs() <= by;
@@ -182,7 +183,7 @@ fn differing(found: &Row, said: &Row) -> Vec<String> {
         .collect()
 }
 
-/// All that differs between a file and its row.
+/// All differences between a file and its row.
 pub(crate) fn differences(folder: &Path, row: &Row) -> Vec<String> {
     let found = match (open(folder, row), row.voxel_type == REFUSED) {
         (Ok(volume), false) => differing(&row_of(&volume, row), row),
@@ -197,7 +198,7 @@ pub(crate) fn differences(folder: &Path, row: &Row) -> Vec<String> {
     found.into_iter().map(|difference| format!("{}: {difference}", row.file)).collect()
 }
 
-/// Files that other libraries have written.
+/// Checks the files in the repository, which other libraries have written.
 pub(crate) fn written_files_are_read_as_other_libraries_read_them() {
     let rows = table("written.tsv");
     let wrong: Vec<String> =
@@ -212,13 +213,13 @@ pub(crate) fn written_files_are_read_as_other_libraries_read_them() {
     }
 }
 
-/// The test data.
+/// Checks the test data outside the repository, if available.
 pub(crate) fn test_data_are_read_as_other_libraries_read_them(data: &Path) {
     let rows = table("data.tsv");
     let wrong: Vec<String> = rows.iter().flat_map(|row| differences(data, row)).collect();
     println!("{} files, {} differences", rows.len(), wrong.len());
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
-    // None is forgotten.
+    // Every file has a row.
     let mut folders = ["formats", "raw", "first"].map(|name| data.join(name)).to_vec();
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(folder).expect("it is there") {
@@ -233,7 +234,7 @@ pub(crate) fn test_data_are_read_as_other_libraries_read_them(data: &Path) {
     }
 }
 
-/// A change of any column is noticed.
+/// Guards the comparison itself: a change of any column is detected.
 pub(crate) fn a_wrong_row_is_noticed() {
     let rows = table("written.tsv");
     let folder = folder().join("written");
@@ -266,7 +267,7 @@ pub(crate) fn a_wrong_row_is_noticed() {
     for wrong in [missing, refused, Row { voxel_type: REFUSED.to_owned(), ..otherwise }] {
         assert_eq!(differences(&folder, &wrong).len(), 1, "{wrong:?}");
     }
-    // With loss: what is off by no more than that passes, and no more.
+    // After lossy compression: values within the tolerance pass, and no others.
     let lossy = Row { tolerance: 1.0, ..row.clone() };
     let off = |by: f64| differing(&Row { min: row.min + by, ..row.clone() }, &lossy).len();
     assert_eq!([off(1.0), off(1.5)], [0, 1]);

@@ -1,15 +1,15 @@
-//! What the rendering tests share: a device and ways to render.
+//! Shared helpers of the rendering tests: a device and ways to render.
 
 pub(crate) use chiaroscuro::data::Dataset;
 use chiaroscuro::gpu::{Context, Picture, RenderOptions, Renderer, ShaderLibrary};
 use chiaroscuro::model::Settings;
 
-/// A device, or a failed test: without one nothing is checked, and that must be seen.
+/// Opens a device, or fails the test: a check that did not run must be seen.
 pub(crate) fn context() -> Context {
     Context::headless().unwrap_or_else(|err| panic!("the rendering tests need a graphics adapter: {err}"))
 }
 
-/// A picture with everything as the settings say.
+/// Renders a picture with default options.
 pub(crate) fn render(
     renderer: &mut Renderer,
     loaded: &Dataset,
@@ -19,7 +19,7 @@ pub(crate) fn render(
     renderer.render(loaded, settings, size, &RenderOptions::default()).expect("the picture is rendered")
 }
 
-/// A light's attenuation volume, filled everywhere.
+/// Attenuation volume of a light, filled everywhere.
 pub(crate) fn attenuation(
     renderer: &mut Renderer,
     loaded: &Dataset,
@@ -37,7 +37,7 @@ pub(crate) fn attenuation(
     renderer.attenuation(&request, light).expect("it is read back").expect("the light has a volume").values
 }
 
-/// A renderer whose shaders have something else in place of `from`.
+/// Creates a renderer whose shaders have `from` replaced by `to`.
 pub(crate) fn damaged(from: &str, to: &str) -> Renderer {
     let context = context();
     let shaders = ShaderLibrary::with_mutation(&context, from, to);

@@ -1,22 +1,27 @@
-//! Comparators. Each has a test below that it can fail.
+//! Comparison of pictures and volumes by their largest error and RMSE. Tests below show that each comparison can
+//! fail.
 
-/// What a comparison allows.
+/// Upper limits for a comparison's errors.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Limit {
+    /// Largest absolute difference that is allowed.
     pub(crate) max: f64,
+    /// Largest root mean square of the differences that is allowed.
     pub(crate) rmse: f64,
 }
 
-/// What a comparison found.
+/// Result of a comparison of two lists.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Difference {
+    /// Largest absolute difference of two values.
     pub(crate) max: f64,
+    /// Index of the largest difference.
     pub(crate) max_at: usize,
+    /// Root mean square of the differences.
     pub(crate) rmse: f64,
 }
 
-/// The difference of two lists of numbers of the same length; what is not a number counts as an
-/// infinite difference.
+/// Difference of two lists of the same length; a value that is NaN counts as an infinite difference.
 pub(crate) fn difference(actual: &[f64], expected: &[f64]) -> Difference {
     assert_eq!(actual.len(), expected.len(), "lists of different lengths cannot be compared");
     assert!(!actual.is_empty(), "nothing to compare");
@@ -34,7 +39,7 @@ pub(crate) fn difference(actual: &[f64], expected: &[f64]) -> Difference {
     found
 }
 
-/// Compares and says what is wrong.
+/// Compares two lists with a limit; an error says where they differ and by how much.
 pub(crate) fn compare(
     what: &str,
     actual: &[f64],
@@ -53,17 +58,17 @@ pub(crate) fn compare(
     ))
 }
 
-/// Flattens texels.
+/// Flattens f32 texels into a list of channels in f64.
 pub(crate) fn flat32(texels: &[[f32; 4]]) -> Vec<f64> {
     texels.iter().flatten().map(|&c| f64::from(c)).collect()
 }
 
-/// Flattens texels.
+/// Flattens f64 texels into a list of channels.
 pub(crate) fn flat64(texels: &[[f64; 4]]) -> Vec<f64> {
     texels.iter().flatten().copied().collect()
 }
 
-/// To f64.
+/// Converts a list of f32 values to f64.
 pub(crate) fn wide(values: &[f32]) -> Vec<f64> {
     values.iter().map(|&v| f64::from(v)).collect()
 }
@@ -72,7 +77,7 @@ mod can_fail {
     use super::{Limit, compare};
     use crate::thresholds::{LITERAL, SAME_WEIGHTS};
 
-    /// A smooth list, and the same with one thing wrong.
+    /// Smooth list, and a copy with some values spoiled.
     fn lists(spoil: impl Fn(usize, f64) -> f64) -> (Vec<f64>, Vec<f64>) {
         let good: Vec<f64> = (0..1000).map(|i| (f64::from(i) / 100.0).sin().abs()).collect();
         let bad = good.iter().enumerate().map(|(i, &v)| spoil(i, v)).collect();

@@ -7,7 +7,7 @@ use chiaroscuro::model::{
 };
 use glam::DVec3;
 
-/// Something with thin and thick, hard and soft parts, without any symmetry.
+/// Asymmetric volume with thin and thick, hard and soft parts.
 pub(crate) fn creature(n: usize, spacing_mm: DVec3) -> Volume {
     let half = n as f64 / 2.0;
     let soft = 1.5 / half;
@@ -37,7 +37,7 @@ pub(crate) fn creature(n: usize, spacing_mm: DVec3) -> Volume {
     Volume::with_spacing("creature", [n; 3], spacing_mm, Samples::U8(values)).expect("a valid volume")
 }
 
-/// Opacities from thin haze to nearly solid.
+/// Transfer function with opacities from thin haze to nearly solid.
 pub(crate) fn transfer() -> TransferFunction {
     let point = |value, color, opacity| ControlPoint::new(value, color, opacity);
     TransferFunction {
@@ -53,7 +53,7 @@ pub(crate) fn transfer() -> TransferFunction {
     }
 }
 
-/// One light and a turned camera. Soft light is as coarse as it is asked for, however small the volume.
+/// Look with one light and a rotated camera. Soft light has the requested resolution, however small the volume.
 pub(crate) fn look() -> Settings {
     Settings {
         shadows: Shadows { least_blocks: 1, ..Shadows::default() },
@@ -71,19 +71,19 @@ pub(crate) fn look() -> Settings {
     }
 }
 
-/// A white light that casts shadows.
+/// White light that casts shadows.
 pub(crate) fn light(kind: LightKind, position: [f64; 3]) -> Light {
     Light { kind, position, ..Light::default() }
 }
 
-/// A homogeneous block: `inside` gives the voxels that are full.
+/// Homogeneous block: `inside` returns true for the full voxels.
 pub(crate) fn block(n: usize, inside: impl Fn([usize; 3]) -> bool) -> Volume {
     let values =
         (0..n * n * n).map(|at| if inside([at % n, at / n % n, at / n / n]) { 255 } else { 0 }).collect();
     Volume::with_spacing("block", [n; 3], DVec3::ONE, Samples::U8(values)).expect("a valid volume")
 }
 
-/// A homogeneous ball with a soft edge one voxel wide.
+/// Homogeneous ball with a soft edge one voxel wide.
 pub(crate) fn ball(n: usize, centre: DVec3, radius: f64) -> Volume {
     let values = (0..n * n * n)
         .map(|at| {
@@ -94,7 +94,7 @@ pub(crate) fn ball(n: usize, centre: DVec3, radius: f64) -> Volume {
     Volume::with_spacing("ball", [n; 3], DVec3::ONE, Samples::U8(values)).expect("a valid volume")
 }
 
-/// Extinction proportional to density: `per_voxel` where it is full.
+/// Transfer function with extinction proportional to density: `per_voxel` at full density.
 pub(crate) fn linear_extinction(per_voxel: f64) -> TransferFunction {
     let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     TransferFunction {
@@ -104,7 +104,7 @@ pub(crate) fn linear_extinction(per_voxel: f64) -> TransferFunction {
     }
 }
 
-/// A cloud of blobs of all densities, the same for the same seed.
+/// Cloud of blobs of all densities, reproducible by its seed.
 pub(crate) fn noise(n: usize, seed: u64) -> Volume {
     let wave = |phase: u64, at: usize| (0.9 * at as f64 + (seed * phase) as f64).sin();
     let of = |[x, y, z]: [usize; 3]| wave(3, x) * wave(5, y) + wave(7, z) * wave(11, x + y) + wave(13, y + z);
@@ -114,7 +114,7 @@ pub(crate) fn noise(n: usize, seed: u64) -> Volume {
     Volume::with_spacing("noise", [n; 3], DVec3::ONE, Samples::U8(values)).expect("a valid volume")
 }
 
-/// A camera that looks along an axis of the volume from outside, without perspective.
+/// Orthographic camera that looks along an axis of the volume from outside.
 pub(crate) fn straight(azimuth_deg: f64, elevation_deg: f64) -> Camera {
     Camera {
         projection: Projection::Orthographic,
@@ -125,8 +125,8 @@ pub(crate) fn straight(azimuth_deg: f64, elevation_deg: f64) -> Camera {
     }
 }
 
-/// Puts the eye where every first look of earlier versions had it, and the key light 40° from the line of sight, as much
-/// to the left as up.
+/// Sets the camera of first looks in earlier versions, and the key light 40° from the line of sight, as much to the
+/// left as up.
 pub(crate) fn seen_as_earlier(settings: &mut Settings) {
     (settings.camera.azimuth_deg, settings.camera.elevation_deg) = (-60.0, 28.0);
     let side = 40f64.to_radians().sin() / std::f64::consts::SQRT_2;
@@ -135,18 +135,18 @@ pub(crate) fn seen_as_earlier(settings: &mut Settings) {
     settings.lights[0].position = (settings.camera.scene_from_view() * place * distance).into();
 }
 
-/// Light as the paper has it: the light volume alone, splatted back with the kernel of the light pass.
+/// Sets the shadows of the paper: the light volume alone, back-projected with the kernel of the light pass.
 pub(crate) fn paper(settings: &mut Settings) {
     settings.shading.sides = Sides::Two;
     settings.shadows.reverse_kernel = ReverseKernel::Forward;
     settings.shadows.near_field = NearField::Off;
 }
 
-/// Material that answers to light evenly from all sides: no normals, no ambient.
+/// Sets a material that reflects light equally from all directions: no normals, no ambient light.
 pub(crate) fn isotropic(settings: &mut Settings) {
     settings.shading.ambient = 0.0;
     settings.shading.diffuse = 1.0;
     settings.shading.specular = 0.0;
-    // Above any gradient that a volume can have.
+    // Above the largest gradient that a volume can have.
     settings.shading.surface_gradient = 10.0;
 }

@@ -1,4 +1,4 @@
-//! Light that is followed by lot: free ways through material without steps, slabs or kernels of sheets.
+//! Path tracing by Woodcock (delta) tracking: free paths through material without steps, slabs or sheet kernels.
 
 use chiaroscuro::model::{BakedTransfer, Settings};
 use chiaroscuro::reference::cubic_b_spline;
@@ -6,23 +6,24 @@ use glam::DVec3;
 
 use crate::common::Dataset;
 
-/// What paths run through.
+/// Material that paths run through.
 pub(crate) struct Material {
-    /// Voxels along each axis, with those of nothing that surround the grid.
+    /// Number of voxels along each axis, including the empty border around the grid.
     dims: [usize; 3],
     densities: Vec<f64>,
     table: BakedTransfer,
-    /// The largest extinction anywhere.
+    /// Largest extinction anywhere, per scene unit (the majorant).
     majorant: f64,
-    /// Where some of the 4³ voxels around a point may attenuate: of points from a voxel to the next along each axis.
+    /// True for a cell if any of the 4³ voxels around it may attenuate; cells lie between neighbouring voxels along
+    /// each axis.
     is_occupied: Vec<bool>,
 }
 
-/// Voxels of nothing around the grid: as many as a kernel reaches, and one for points that lie on its rim.
+/// Width of the empty border around the grid, in voxels: the radius of a kernel, and one for points on its rim.
 const BORDER: usize = 3;
 
 impl Material {
-    /// What the eye sees of a volume.
+    /// Builds the material of a volume under the eye's transfer function.
     pub(crate) fn of(loaded: &Dataset, settings: &Settings) -> Self {
         let range = settings.shown_range(&loaded.volume().ranges());
         let volume = &loaded.volume().showing(range);
@@ -57,7 +58,7 @@ impl Material {
         [r, g, b]
     }
 
-    /// The density there, unless nothing attenuates anywhere near.
+    /// Density at an index-space point; `None` if nothing around it attenuates.
     fn density(&self, point: DVec3) -> Option<f64> {
         let below = point.floor();
         // The first of the four voxels along each axis whose kernels reach the point.
@@ -83,7 +84,7 @@ impl Material {
         Some(density)
     }
 
-    /// Where light from the eye meets material first, by Woodcock's tracking; `step` is one scene unit along the ray.
+    /// First interaction of a ray with material, by Woodcock tracking; `step` is one scene unit along the ray.
     pub(crate) fn first_meeting(
         &self,
         lots: &mut Lots,
@@ -105,7 +106,7 @@ impl Material {
         }
     }
 
-    /// An estimate of the transmittance of a way, right in the mean (ratio tracking).
+    /// Unbiased estimate of the transmittance along a ray (ratio tracking).
     pub(crate) fn transmittance(&self, lots: &mut Lots, mut point: DVec3, step: DVec3, length: f64) -> f64 {
         let mut left = length;
         let mut transmittance = 1.0;
@@ -121,12 +122,12 @@ impl Material {
     }
 }
 
-/// The first voxels of the 4² rows of four from one voxel on.
+/// Indices of the first voxels of the 4² rows of four voxels that start at a voxel.
 fn rows(dims: [usize; 3], first: usize) -> impl Iterator<Item = usize> {
     (0..16).map(move |row| first + (row / 4 * dims[1] + row % 4) * dims[0])
 }
 
-/// Numbers in [0, 1) that look drawn by lot (`SplitMix64`).
+/// Pseudo-random numbers in [0, 1) (`SplitMix64`).
 pub(crate) struct Lots(pub(crate) u64);
 
 impl Lots {
@@ -138,7 +139,7 @@ impl Lots {
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// A unit vector, evenly over the sphere.
+    /// Random unit vector, uniform over the sphere.
     pub(crate) fn direction(&mut self) -> DVec3 {
         let (z, angle) = (2.0 * self.draw() - 1.0, std::f64::consts::TAU * self.draw());
         let across = (1.0 - z * z).max(0.0).sqrt();

@@ -1,4 +1,5 @@
-//! What the host binds is what every entry point declares: number, name, kind, format and size, by reflection.
+//! Check of the bind group layouts: number, name, kind, format and size of every binding agree with the shaders, by
+//! reflection.
 
 use chiaroscuro::gpu::{SHADERS, shader_bindings};
 use naga::valid::{Capabilities, GlobalUse, ModuleInfo, ValidationFlags, Validator};
@@ -10,14 +11,14 @@ use wgpu::{
 
 use crate::sources::variants;
 
-/// Formats of single channels, and of light volumes.
+/// Formats of single-channel storage textures, and of light volumes.
 const FORMATS: [(TextureFormat, TextureFormat); 3] = [
     (TextureFormat::R16Float, TextureFormat::R16Float),
     (TextureFormat::R16Float, TextureFormat::R8Unorm),
     (TextureFormat::R32Float, TextureFormat::R32Float),
 ];
 
-/// A shader's source, parsed.
+/// Parses and validates a shader's source.
 fn parsed(source: &str) -> (Module, ModuleInfo) {
     let module = naga::front::wgsl::parse_str(source).expect("a shader");
     let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module);
@@ -47,7 +48,7 @@ fn format(format: naga::StorageFormat) -> TextureFormat {
     }
 }
 
-/// The binding that a global variable declares.
+/// Binding type that a global variable declares.
 fn declared(module: &Module, variable: &GlobalVariable, is_sampled: bool) -> BindingType {
     let inner = &module.types[variable.ty].inner;
     let size = || wgpu::BufferSize::new(u64::from(inner.size(module.to_ctx())));
@@ -83,10 +84,10 @@ fn declared(module: &Module, variable: &GlobalVariable, is_sampled: bool) -> Bin
     }
 }
 
-/// Group, number, name and kind of a binding.
+/// Group, number, name and type of a binding.
 type Binding = (u32, u32, String, BindingType);
 
-/// The bindings that an entry point uses.
+/// Bindings that an entry point uses.
 fn used_by(source: &str) -> Vec<Binding> {
     let (module, info) = parsed(source);
     assert_eq!(module.entry_points.len(), 1, "a shader has one entry point");
@@ -105,7 +106,7 @@ fn used_by(source: &str) -> Vec<Binding> {
     used
 }
 
-/// The bindings that any of the variants of a shader uses: a texture is filtered if any filters it.
+/// Bindings that any variant of a shader uses: a texture is filterable if any variant filters it.
 fn used_by_any(sources: &[(String, String)]) -> Vec<Binding> {
     let filtered = TextureSampleType::Float { filterable: true };
     let is_filtered =
@@ -121,7 +122,7 @@ fn used_by_any(sources: &[(String, String)]) -> Vec<Binding> {
     all
 }
 
-/// Where the host's layout of a shader and what its variants use differ.
+/// Differences between the host's layout of a shader and the bindings of its variants.
 fn differences(groups: &[Vec<(&'static str, BindGroupLayoutEntry)>], used: &[Binding]) -> Vec<String> {
     let mut bound = Vec::new();
     for (group, slots) in (0..).zip(groups) {

@@ -1,4 +1,4 @@
-//! Constants, tables and workgroups have the sizes that Rust counts on.
+//! Check that constants, table sizes and workgroup sizes agree between Rust and the shaders.
 
 use chiaroscuro::data::{BRICK_EDGE, CELL_EDGE};
 use chiaroscuro::gpu::LISTED_PER_ROW;
@@ -10,8 +10,7 @@ use chiaroscuro::plan::{
 
 use crate::sources::{check, entry_shaders, joined};
 
-/// The value of a constant in a shader. The compiler drops constants without a type of their own, so
-/// it is asked for one with a type.
+/// Value of a constant in a shader. The compiler drops untyped constants, so a typed one is appended.
 fn constant(source: &str, name: &str) -> Option<f64> {
     let asked = format!("{source}\nconst ASKED_FOR: f32 = f32({name});\n");
     let module = check(&asked).ok()?;
@@ -62,7 +61,7 @@ fn the_table_has_room_for_all_entries() {
     }
 }
 
-/// What a workgroup fills: half a brick, or a tile. Others have sizes of their own.
+/// Workgroups cover half a brick, or a tile. Other passes have sizes of their own.
 #[test]
 fn workgroups_fill_bricks_and_tiles() {
     let (brick, tile) = (BRICK_EDGE as u32, TILE_EDGE);
@@ -77,7 +76,8 @@ fn workgroups_fill_bricks_and_tiles() {
     }
 }
 
-/// Sizes in `common/sizes.wgsl`: their values in Rust, others with as many digits, and shaders that count on them.
+/// Constants of `common/sizes.wgsl`: name, value in Rust, another value of the same number of digits, and shaders
+/// that use it.
 const SIZES: [(&str, usize, usize, &[&str]); 9] = [
     ("BRICK_EDGE", BRICK_EDGE, 4, &["light/backproject", "light/combine", "light/raycast", "scatter/splat"]),
     ("BRICK_EDGE", BRICK_EDGE, 4, &["scatter/eye", "scatter/footprints", "scatter/normalise"]),
@@ -106,14 +106,14 @@ fn sizes_are_the_same_in_rust_and_in_the_shaders() {
         for shader in shaders {
             let source = joined(&format!("{shader}.wgsl"));
             assert_eq!(constant(&source, name), Some(value as f64), "{name} in {shader}");
-            // What the shader does follows from it, and from no number that happens to be the same.
+            // The shader depends on the constant, and on no equal literal.
             let changed = source.replace(&format!("{name} = {value};"), &format!("{name} = {other};"));
             assert_ne!(statements(&source), statements(&changed), "{shader} does not use {name}");
         }
     }
 }
 
-/// What a shader does, as far as two shaders of the same length can be compared by it.
+/// Functions of a shader as text, comparable between two shaders of the same length.
 fn statements(source: &str) -> String {
     let module = check(source).expect("the shader is valid");
     format!("{:?} {:?}", module.functions, module.entry_points)
@@ -131,7 +131,7 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
         ("bounces/sweep.wgsl", [8, 8, 1]),
         ("eye/floor.wgsl", [8, 8, 1]),
         ("eye/gather.wgsl", [8, 8, 1]),
-        // What LANES says, which the parser leaves open.
+        // Size given by LANES, which the parser leaves open.
         ("light/average.wgsl", [8, 8, 4]),
         ("light/backproject.wgsl", [1, 1, 1]),
         ("light/clear_margin.wgsl", [8, 8, 4]),

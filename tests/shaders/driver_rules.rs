@@ -1,4 +1,4 @@
-//! What makes Mesa's software driver slow is not in the shaders.
+//! Check that shaders avoid constructs that make Mesa's software driver (llvmpipe) slow.
 
 use std::collections::BTreeSet;
 
@@ -6,7 +6,7 @@ use wgpu::TextureFormat;
 
 use crate::sources::{check, code_of, entry_shaders, joined, variants};
 
-/// Uniforms that are not copied by the first statements of a shader's entry, or read from elsewhere.
+/// Uniforms that are not copied by the first statements of a shader's entry point, or are read elsewhere.
 fn uniforms_read_late(source: &str) -> Vec<String> {
     let code = code_of(source);
     let entry = code.split("@compute").nth(1).and_then(|rest| rest.split_once(") {\n"));
@@ -14,7 +14,7 @@ fn uniforms_read_late(source: &str) -> Vec<String> {
     let copies: BTreeSet<_> =
         body.lines().map(str::trim).take_while(|line| line.contains(" = bound_")).collect();
     let declared = code.split("var<uniform> ").skip(1).filter_map(|rest| rest.split(':').next());
-    // Of an array whose index varies there is no copy.
+    // An array with a varying index cannot be copied.
     let reads = |name: &str| {
         let arrays = [".lights[i]", ".rays[i]", ".rays[id.z]"].map(|of| format!("{name}{of}"));
         arrays.iter().fold(code.clone(), |code, of| code.replace(of, "")).matches(name).count()
@@ -26,7 +26,7 @@ fn uniforms_read_late(source: &str) -> Vec<String> {
     declared.filter(is_late).map(str::to_owned).collect()
 }
 
-/// A software driver reads them lane by lane behind a branch (density/volume.wgsl).
+/// Behind a branch, a software driver reads uniforms lane by lane (density/volume.wgsl).
 #[test]
 fn uniforms_are_copied_before_anything_branches() {
     let late: Vec<_> = entry_shaders()
@@ -56,7 +56,7 @@ fn uniforms_read_late_are_noticed() {
     }
 }
 
-/// Whether an expression is made of uniforms and constants alone, and of any uniform.
+/// Origin of an expression: constants, uniforms and constants, or others.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Origin {
     Constant,
@@ -126,8 +126,8 @@ fn branches_on_uniforms_in(module: &naga::Module) -> usize {
     functions.chain(entries).map(|function| branches_on_uniforms(module, function, &function.body)).sum()
 }
 
-/// Mesa's software driver writes uniforms that alone decide a branch into the shader: it makes the shader
-/// anew for each dispatch, which takes time, and keeps it, which takes 150 KiB.
+/// Mesa's software driver specialises a shader on uniforms that alone decide a branch: it recompiles the shader for
+/// each dispatch, which takes time, and caches it, which takes 150 KiB.
 #[test]
 fn no_branch_depends_on_uniforms_alone() {
     for name in entry_shaders() {
@@ -136,7 +136,7 @@ fn no_branch_depends_on_uniforms_alone() {
             assert_eq!(branches_on_uniforms_in(&module), 0, "{name}, {what}");
         }
     }
-    // And such branches are found.
+    // Guards the check itself: such a branch is detected.
     let wrong = joined("output/display.wgsl").replacen(
         "    if (any(",
         "    if (display.clip + 1u > 1u) {\n        return;\n    }\n    if (any(",

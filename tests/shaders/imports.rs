@@ -1,4 +1,4 @@
-//! Every file is embedded, imported where it is needed, and there once.
+//! Check that every shader file is embedded, imported where needed, and included once.
 
 use std::collections::BTreeSet;
 
@@ -50,7 +50,7 @@ fn every_imported_file_appears_exactly_once() {
     for name in entry_shaders() {
         let source = joined(name);
         assert!(!source.contains("#import"), "{name}: an import was not resolved");
-        // What is to be there: the file and what it imports, directly or not.
+        // Expected files: the shader and its direct and indirect imports.
         let mut wanted = BTreeSet::from([name]);
         let mut open = vec![name];
         while let Some(next) = open.pop() {

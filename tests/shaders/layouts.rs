@@ -1,8 +1,8 @@
-//! How Rust lays out the structs that it shares with shaders.
+//! Memory layouts in Rust of the structs that it shares with shaders.
 
 use chiaroscuro::gpu::uniforms;
 
-/// A field: its name, offset and type as WGSL calls it, `[f32; 3]` for a vector.
+/// Field of a struct: its name, offset and type in Rust's terms, `[f32; 3]` for a vector.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Field {
     pub(crate) name: String,
@@ -10,7 +10,7 @@ pub(crate) struct Field {
     pub(crate) kind: String,
 }
 
-/// A struct as one of the two languages lays it out.
+/// Memory layout of a struct in one of the two languages.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Layout {
     pub(crate) name: String,
@@ -18,14 +18,14 @@ pub(crate) struct Layout {
     pub(crate) fields: Vec<Field>,
 }
 
-/// The type of a field, without the modules in which structs live.
+/// Type name of a field, without module paths.
 pub(crate) fn kind_of<Whole, F>(_field: fn(&Whole) -> &F) -> String {
     let full = std::any::type_name::<F>();
     let (bracket, path) = full.split_at(usize::from(full.starts_with('[')));
     format!("{bracket}{}", path.rsplit("::").next().unwrap_or(path))
 }
 
-/// The Rust layout of a struct of `gpu::uniforms`. A field that is left out does not compile.
+/// Rust layout of a struct of `gpu::uniforms`. Omitting a field is a compile error.
 macro_rules! layout {
     ($name:ident { $($field:ident),+ $(,)? }) => {{
         let _all_fields = |whole: uniforms::$name| {
@@ -43,7 +43,7 @@ macro_rules! layout {
     }};
 }
 
-/// Every mirrored struct, with a shader in which it appears.
+/// All mirrored structs, each with a shader in which it appears.
 pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
     let frame = layout!(SheetFrame {
         origin,

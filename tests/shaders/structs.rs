@@ -1,11 +1,11 @@
-//! Structs that Rust and shaders share have the same fields in the same places.
+//! Check that structs shared by Rust and shaders have the same fields at the same offsets.
 
 use std::collections::BTreeSet;
 
 use crate::layouts::{Field, Layout, mirrored};
 use crate::sources::{check, entry_shaders, joined};
 
-/// What Rust would call a WGSL type.
+/// Rust's name of a WGSL type.
 fn kind_in(module: &naga::Module, ty: naga::Handle<naga::Type>) -> String {
     let scalar = |scalar: naga::Scalar| {
         let letter = match scalar.kind {
@@ -28,7 +28,7 @@ fn kind_in(module: &naga::Module, ty: naga::Handle<naga::Type>) -> String {
     }
 }
 
-/// The WGSL layout of a struct.
+/// Layout of a struct in WGSL.
 fn layout_in(module: &naga::Module, name: &str) -> Option<Layout> {
     let (_, ty) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name))?;
     let naga::TypeInner::Struct { members, span } = &ty.inner else { return None };
@@ -43,7 +43,7 @@ fn layout_in(module: &naga::Module, name: &str) -> Option<Layout> {
     Some(Layout { name: name.to_owned(), size: *span as usize, fields })
 }
 
-/// All that differs between both layouts of a struct, one line each.
+/// All differences between both layouts of a struct, one line each.
 fn differences(rust: &Layout, module: &naga::Module) -> Vec<String> {
     let name = &rust.name;
     let Some(wgsl) = layout_in(module, name) else { return vec![format!("{name} is not in the shader")] };
@@ -88,7 +88,7 @@ fn every_shared_struct_is_compared() {
     let compared: BTreeSet<_> = mirrored().into_iter().map(|(_, layout)| layout.name).collect();
     assert_eq!(declared, compared);
 
-    // And every buffer that a shader reads as a struct is one of them.
+    // Every buffer that a shader reads as a struct is compared as well.
     for name in entry_shaders() {
         let module = check(&joined(name)).expect("the shader is valid");
         for (_, global) in module.global_variables.iter() {

@@ -1,4 +1,4 @@
-//! Every shader is valid for every storage format, and needs nothing that an adapter might lack.
+//! Check that every shader is valid for every storage format, and needs no optional capability.
 
 use std::fmt::Write as _;
 

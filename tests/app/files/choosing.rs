@@ -1,4 +1,4 @@
-//! Files of several volumes: which is shown, how another is chosen, and that it is the same one the next time.
+//! Tests of files of several volumes: the one shown first, choosing another, and reopening the same one.
 
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::{Dropped, click, wait_until, wait_until_idle, window_with};
 
-/// A NumPy array of bytes, whose values are those of `value` by their place in the file.
+/// Writes a NumPy array of bytes; `value` maps positions in the file to values.
 pub(crate) fn write_npy(path: &Path, shape: &str, count: usize, value: impl Fn(usize) -> u8) {
     let header = format!("{{'descr': '|u1', 'fortran_order': False, 'shape': ({shape}), }}\n");
     let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
@@ -20,7 +20,7 @@ pub(crate) fn write_npy(path: &Path, shape: &str, count: usize, value: impl Fn(u
     std::fs::write(path, bytes).expect("a file");
 }
 
-/// Three time steps of a block that grows.
+/// Writes three time steps of a growing block.
 fn steps(folder: &Path) -> PathBuf {
     let path = folder.join("steps.npy");
     write_npy(&path, "3, 8, 8, 8", 3 * 512, |at| {
@@ -52,7 +52,7 @@ fn wait_for(harness: &mut Harness<'_, App>, label: &str) {
 fn another_time_step_is_chosen_by_the_mouse_and_by_keys() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = opened(&steps(folder.path()), None);
-    // Something that no first look has.
+    // A change that no first look makes.
     harness.key_press(Key::CloseBracket);
     harness.run_steps(3);
     let before = harness.state().settings().clone();
@@ -107,7 +107,7 @@ fn a_session_and_the_list_of_files_open_the_same_one_again() {
     let harness = opened(&session, None);
     assert!(harness.query_by_label("2 of 3 · Time step 2").is_some());
     drop(harness);
-    // A file that has fewer of them by now.
+    // The file has fewer time steps now.
     write_npy(&source, "2, 8, 8, 8", 1024, |at| (at % 5) as u8);
     let text = std::fs::read_to_string(&session).unwrap().replace("\"frame\": 1", "\"frame\": 2");
     std::fs::write(&session, text).unwrap();

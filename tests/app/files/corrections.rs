@@ -1,4 +1,4 @@
-//! What the user knows better than the file: edited, undone, kept with the session, and remembered for the file.
+//! Tests of corrections of a file's metadata: edited, undone, stored with the session, and remembered for the file.
 
 use std::path::{Path, PathBuf};
 
@@ -24,7 +24,7 @@ fn press(harness: &mut Harness<'_, App>, modifiers: Modifiers, key: Key) {
     wait_until_idle(harness);
 }
 
-/// A slab that is long in x, less in y and thin in z, in the middle of nothing.
+/// Writes a slab that is long in x, shorter in y and thin in z, surrounded by zeros.
 fn write_slab(path: &Path) {
     let value = |at: usize| {
         let [x, y, z] = [at % 24, at / 24 % 24, at / 576];
@@ -38,7 +38,7 @@ fn start(source: &Path, storage: &Path, session: Option<PathBuf>) -> Harness<'st
     window_with(Options { source, storage, session, ..Options::default() }, Vec2::new(760.0, 1600.0))
 }
 
-/// Unfolds the part that corrects the file.
+/// Expands the corrections in the section "Data".
 fn unfold(harness: &mut Harness<'_, App>) {
     for part in ["Data", "Corrections"] {
         harness.get_by_label(part).scroll_to_me();
@@ -50,7 +50,7 @@ fn unfold(harness: &mut Harness<'_, App>) {
     harness.run_steps(8);
 }
 
-/// Each number goes into the field in which it was typed, and none is a command, however slow frames are.
+/// Numbers typed with Tab between them go into their own fields, and none is a command, however slow frames are.
 #[test]
 fn numbers_are_typed_with_tab_within_a_frame() {
     let mut harness = slow_window(Vec2::new(760.0, 1600.0));
@@ -63,7 +63,7 @@ fn numbers_are_typed_with_tab_within_a_frame() {
     wait_until_idle(&mut harness);
     let after = settings(&harness);
     assert_eq!(after.volume.spacing, Some([0.957, 0.957, 1.5]));
-    // No digit has chosen a view.
+    // No digit was taken as a command for a view.
     assert_eq!(after.camera.azimuth_deg, before.camera.azimuth_deg);
     assert_eq!(after.camera.elevation_deg, before.camera.elevation_deg);
     assert_eq!(after.camera.projection, before.camera.projection);
@@ -74,7 +74,7 @@ fn what_is_corrected_is_seen_undone_and_remembered_for_the_file() {
     let (folder, storage) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let file = folder.path().join("slab_24x24x24_uint8.raw");
     write_slab(&file);
-    // Not for the first time, which says how to begin over the picture.
+    // Not the first run, which shows hints over the picture.
     std::fs::create_dir(storage.path().join("runs")).expect("a folder");
     let mut harness = start(&file, storage.path(), None);
     let as_opened = settings(&harness);
@@ -90,7 +90,7 @@ fn what_is_corrected_is_seen_undone_and_remembered_for_the_file() {
     let flipped = settings(&harness);
     assert_eq!((&flipped.transfer, &flipped.lights), (&as_opened.transfer, &as_opened.lights));
 
-    // One step back, and one forward.
+    // One undo step and one redo step.
     press(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!(settings(&harness), as_opened);
     let (undone, _) = picture(&mut harness);
@@ -98,7 +98,7 @@ fn what_is_corrected_is_seen_undone_and_remembered_for_the_file() {
     press(&mut harness, Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
     assert_eq!(settings(&harness), flipped);
 
-    // A drag is one step, whatever lies between.
+    // A drag is one undo step, whatever values it passes.
     let number = harness.get_by_label("Spacing along z").rect().center();
     drag(&mut harness, number, Vec2::new(120.0, 0.0));
     harness.run_steps(8);
@@ -114,7 +114,7 @@ fn what_is_corrected_is_seen_undone_and_remembered_for_the_file() {
     assert!(harness.state().errors().is_empty(), "{:?}", harness.state().errors());
     drop(harness);
 
-    // The next run opens it so, and says so; a step back shows it as the file says, and forgets.
+    // The next run opens the file corrected, and says so; undo shows it as in the file, and forgets the correction.
     let mut harness = start(&file, storage.path(), None);
     assert_eq!(settings(&harness).volume, spaced.volume);
     let said = harness.state().latest_note().map(str::to_owned);
@@ -129,7 +129,7 @@ fn what_is_corrected_is_seen_undone_and_remembered_for_the_file() {
     assert!(settings(&harness).volume.is_none());
     drop(harness);
 
-    // Another file at the same place is not touched.
+    // Another file at the same path is not corrected.
     let mut harness = start(&file, storage.path(), None);
     unfold(&mut harness);
     click(&mut harness, "Flip z");
@@ -161,7 +161,7 @@ fn a_session_corrects_its_volume_and_no_other() {
     let id =
         u64::from_str_radix(&record.volume.as_ref().expect("of a volume").content_id, 16).expect("a number");
     assert_eq!(record.corrections_of(id), Some(wanted.volume));
-    // Where nothing is remembered of the file.
+    // With a storage that remembers nothing of the file.
     let elsewhere = tempfile::tempdir().unwrap();
     let harness = start(&file, elsewhere.path(), Some(session.clone()));
     assert_eq!(settings(&harness).volume, wanted.volume);
@@ -199,7 +199,7 @@ fn a_look_that_is_kept_and_lengths_go_along() {
     assert_eq!((settings(&harness).opacity_unit, settings(&harness).volume.unit), {
         (Length::Mm(2.0), Some(SpacingUnit::Um))
     });
-    // The next volume is shown as this one, and is what its file says.
+    // The next volume keeps this look, but not its corrections.
     let ctx = harness.ctx.clone();
     harness.get_by_label("File").click();
     harness.run_steps(6);

@@ -1,4 +1,4 @@
-//! Pictures and animations that the window writes.
+//! Tests of pictures and animations that the window exports.
 
 use std::path::PathBuf;
 
@@ -80,7 +80,7 @@ fn turntables_and_copies_come_from_the_window() {
     let decoder = image::codecs::png::PngDecoder::new(std::io::Cursor::new(std::fs::read(&path).unwrap()));
     let frames = image::AnimationDecoder::into_frames(decoder.unwrap().apng().unwrap());
     assert_eq!(frames.count(), 72);
-    // The kind of file and its name follow each other.
+    // File format and file name follow each other.
     click(&mut harness, "GIF");
     click(&mut harness, "Export");
     wait_until(&mut harness, "never exported", |app| !app.is_exporting());
@@ -89,7 +89,7 @@ fn turntables_and_copies_come_from_the_window() {
     ));
     assert_eq!(image::AnimationDecoder::into_frames(gif.unwrap()).count(), 72);
     click(&mut harness, "Image sequence");
-    // So large that nobody waits for all of them.
+    // So large that the test cannot wait for all frames.
     click(&mut harness, "1920 × 1080");
     click(&mut harness, "Export");
     let is_picture =
@@ -99,7 +99,7 @@ fn turntables_and_copies_come_from_the_window() {
         all.filter(|entry| is_picture(&entry.file_name())).count()
     };
     wait_until(&mut harness, "never made one", |_| made() > 0);
-    // The window is closed, and what it does goes on.
+    // The window is closed, and the export continues.
     harness.key_press(egui::Key::Escape);
     harness.run_steps(3);
     assert!(harness.query_by_label("Export picture or turntable").is_none());
@@ -108,7 +108,7 @@ fn turntables_and_copies_come_from_the_window() {
     wait_until(&mut harness, "never cancelled", |app| !app.is_exporting());
     let made = made();
     assert!((1..72).contains(&made), "{made} were made after all");
-    // What is there is not replaced unasked.
+    // An existing file is not replaced without asking.
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::E);
     harness.run_steps(3);
     click(&mut harness, "Export");

@@ -1,4 +1,4 @@
-//! Files of other programs, read while the window goes on.
+//! Tests of files of other programs, read while the window stays responsive.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -10,10 +10,10 @@ use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::{click, wait_until, wait_until_idle, window, window_with};
 
-/// Longest time for which a frame may keep the window waiting, on a machine that is busy with other tests.
+/// Longest frame while a file is read, on a machine that is busy with other tests.
 const LONGEST_FRAME: Duration = Duration::from_secs(5);
 
-/// A transfer function of Inviwo, with more XML before its points.
+/// Transfer function file of Inviwo, with additional XML before its points.
 fn inviwo(before: &str) -> String {
     let point = |share: f64| {
         format!("<Point><pos content=\"{share}\"/><rgba x=\"1\" y=\"0\" z=\"0\" w=\"{share}\"/></Point>")
@@ -27,7 +27,7 @@ fn write(folder: &Path, name: &str, text: &str) -> PathBuf {
     path
 }
 
-/// Goes on frame by frame until the file is read; no frame takes long.
+/// Runs frames until the file is read; none may take long.
 fn wait_for_file(harness: &mut Harness<'_, App>) {
     loop {
         let start = Instant::now();
@@ -50,7 +50,7 @@ fn a_transfer_function_is_imported_while_the_window_goes_on() {
     harness.run_steps(2);
     assert_eq!(harness.state().file_being_read(), Some(path.as_path()));
     assert!(harness.query_all_by_label_contains("Reading").next().is_some(), "the status bar says so");
-    // Keys are heard meanwhile.
+    // Keys are handled meanwhile.
     harness.key_press(Key::F1);
     harness.run_steps(2);
     assert!(harness.query_all_by_label_contains("Keys and mouse").next().is_some());
@@ -105,7 +105,7 @@ fn xml_that_would_take_minutes_is_refused_within_a_frame_or_two() {
         wait_for_file(&mut harness);
         let error = harness.state().errors().last().expect("an error").clone();
         assert_eq!(error, "The transfer function was not imported", "{name}");
-        // The notice comes with the next frame.
+        // The error message appears with the next frame.
         harness.run_steps(2);
         click(&mut harness, "Details");
         for words in [name, "more attributes and namespaces than can be compared"] {
@@ -128,10 +128,10 @@ fn looks_that_are_named_at_the_start_are_read_while_the_window_goes_on() {
     let harness = window_with(options, size);
     assert_eq!(harness.state().settings().shadows.gain, 2.5, "the look");
     assert_eq!(harness.state().settings().camera.fov_y_deg, 21.0, "the session");
-    // What cannot be read leaves the default volume.
+    // A file that cannot be read leaves the default volume.
     let harness = window_with(Options { source: Some(broken), ..Options::default() }, size);
     assert!(harness.state().volume_name().is_some_and(|name| name.contains("chair")));
-    // The volume is there without a session that is not waited for.
+    // If the wait for the session is cancelled, the volume opens without it.
     let source = Some(crate::harness::SCENE.into());
     let held = App::hold_files();
     let options = Options { source, session: Some(session), ..Options::default() };

@@ -1,4 +1,4 @@
-//! Looks from outside, and the volumes that they name.
+//! Tests of looks from outside, and of the volumes that they name.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use crate::harness::{Dropped, SCENE, click, wait_until, wait_until_idle, window,
 
 const QUESTION: &str = "Open the volume of this look?";
 
-/// A picture with twice the gain of others, of a volume that is somewhere.
+/// Writes a picture whose look has twice the usual gain, of a volume at some path.
 fn picture_of(source: &str, path: &Path) {
     let mut settings = Settings::default();
     settings.shadows.gain = 2.0;
@@ -77,7 +77,7 @@ fn a_volume_elsewhere_is_asked_about_once() {
     click(&mut harness, "Open it");
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("ramp") && app.is_idle());
     assert_eq!(harness.state().settings().shadows.gain, 2.0);
-    // From now on this user has opened it.
+    // The user has opened the volume now, so it is not asked about again.
     let ctx = harness.ctx.clone();
     harness.state_mut().open(SCENE, &ctx);
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("chair") && app.is_idle());
@@ -134,7 +134,7 @@ fn who_trusts_paths_or_names_the_volume_is_not_asked() {
         (options(false, Some(&volume), false), "ramp"),
         (options(true, None, true), "ramp"),
         (options(false, Some(&volume), true), "ramp"),
-        // Asked about, over what is opened when nothing is named.
+        // The question is asked over the default volume.
         (options(false, None, false), "chair"),
         (options(false, None, true), "chair"),
     ] {
@@ -174,7 +174,7 @@ fn long_names_and_curves_do_not_hold_up_the_window() {
         std::fs::write(&path, look).unwrap();
         let start = Instant::now();
         drop_on(&mut harness, &path);
-        // Before names were bounded, one frame with 4 MB of them took 13.6 s.
+        // Before names were limited, one frame with 4 MB of them took 13.6 s.
         assert!(start.elapsed() < Duration::from_secs(5), "{at}: {:?}", start.elapsed());
     }
     assert_eq!(harness.state().settings().lights[0].name, "n".repeat(200));

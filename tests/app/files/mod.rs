@@ -1,4 +1,4 @@
-//! Files that the window opens, writes, and keeps from one run to the next.
+//! Tests of files that the window opens, writes, and keeps between runs.
 
 mod choosing;
 mod corrections;

@@ -1,4 +1,4 @@
-//! Files that are opened, dropped, asked about and remembered.
+//! Tests of opening files: dropped, missing, next in the folder, and remembered.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -37,13 +37,13 @@ fn a_dropped_picture_brings_its_look_back() {
     wait_until(&mut harness, "never exported", |app| !app.is_exporting());
     let before = harness.state().settings().clone();
 
-    // Another look at another volume.
+    // Another look of another volume.
     harness.state_mut().open("builtin:sphere:16", &ctx);
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("sphere"));
     wait_until_idle(&mut harness);
     assert_ne!(harness.state().settings(), &before);
 
-    // What is opened last counts: no look is laid over another volume.
+    // The last request wins: no look is applied to another volume.
     harness.state_mut().open(&first, &ctx);
     harness.state_mut().open("builtin:box:16", &ctx);
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("box"));
@@ -124,7 +124,7 @@ fn the_first_run_has_hints_and_the_next_remembers() {
     harness.run_steps(20);
     assert!(harness.query_by_label("Close the hints").is_none(), "gone with the first drag");
     wait_until_idle(&mut harness);
-    // No further frame is drawn: the look is kept all the same.
+    // No further frame is drawn: the look is autosaved nevertheless.
     let wanted = harness.state().settings().clone();
     let begin = Instant::now();
     while kept_look(folder.path()).as_ref() != Some(&wanted) {
@@ -142,14 +142,14 @@ fn the_first_run_has_hints_and_the_next_remembers() {
     assert_eq!(harness.state().settings(), &wanted);
 }
 
-/// Once opened, a file is offered again and belongs to the look that is kept, also if its name is no text.
+/// Once opened, a file whose name is not valid UTF-8 is offered again and belongs to the autosaved look.
 #[cfg(unix)]
 #[test]
 fn a_file_whose_name_is_no_text_is_opened_again() {
     use std::os::unix::ffi::OsStrExt as _;
     let (folder, storage) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let path = folder.path().join(std::ffi::OsStr::from_bytes(b"t\xfcr_8x9x10_uint8.raw"));
-    // Not every file system has such names.
+    // Not every file system supports such names.
     if std::fs::write(&path, (0..720).map(|i| (i / 3) as u8).collect::<Vec<_>>()).is_err() {
         println!("the temporary folder has no names that are no text: nothing is checked");
         return;

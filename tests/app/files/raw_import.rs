@@ -1,4 +1,4 @@
-//! The window that asks how a file of bare voxels is stored.
+//! Tests of the raw import dialog, which asks how a file of bare voxels is stored.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::{Dropped, PATIENCE, click, wait_until, wait_until_idle, window};
 
-/// A volume of 40 × 32 × 24 voxels of 16 bits behind a header, without a word about it.
+/// Writes a volume of 40 × 32 × 24 voxels of 16 bits behind a header that describes nothing.
 pub(crate) fn scan(folder: &Path) -> PathBuf {
     let volume =
         open("builtin:chair:40", &LoadOptions::default(), &LoadControl::new()).expect("a built-in volume");
@@ -27,7 +27,7 @@ pub(crate) fn scan(folder: &Path) -> PathBuf {
     path
 }
 
-/// The program is given a file, and asks about it; until it has looked into the file.
+/// Drops a file on the window, and waits until the import dialog has analysed it.
 pub(crate) fn ask_about(harness: &mut Harness<'_, App>, path: &Path) {
     harness.input_mut().dropped_files.push(Arc::new(Dropped(path.to_owned())));
     let start = Instant::now();
@@ -99,7 +99,7 @@ fn numbers_are_checked_and_mended() {
 fn numbers_can_be_typed() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scan.raw");
-    // Of constants nothing is known.
+    // Constant bytes give no proposal.
     std::fs::write(&path, vec![7; 9 * 8 * 10]).unwrap();
     let mut harness = window();
     ask_about(&mut harness, &path);

@@ -1,4 +1,4 @@
-//! The window that asks how much of a large volume is read.
+//! Tests of the dialog that asks how much of a large volume to load.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use crate::harness::{Dropped, SCENE, click, wait_until, wait_until_idle, window_
 
 const QUESTION: &str = "A large volume: how much of it?";
 
-/// 64³ voxels of a byte: with what is found of their bricks 340 KB, and on the adapter 1.6 MB.
+/// Writes 64³ voxels of a byte: 340 KB with their brick data, and 1.6 MB on the adapter.
 fn large(folder: &Path) -> PathBuf {
     let path = folder.join("large_64x64x64_uint8.raw");
     let value = |at: usize| ((at % 64) * 2 + (at / 64 % 64) + at / 4096) as u8;
@@ -21,8 +21,8 @@ fn large(folder: &Path) -> PathBuf {
     path
 }
 
-/// A window for which 300 KB are to be had without a question, and 400 KB in all: on adapters that take theirs from the
-/// same not even that. The scene, of 32³ voxels, takes 250 KB of both.
+/// Creates a window with a memory budget of 300 KB without a question, and 400 KB in total: not even that on adapters
+/// that share the memory. The scene, of 32³ voxels, takes 250 KB of both.
 fn little_window() -> Harness<'static, App> {
     let load = LoadOptions { memory_budget_bytes: 300 << 10, ..LoadOptions::default() };
     let options = Options { source: Some(SCENE.into()), load, ..Options::default() };

@@ -1,4 +1,4 @@
-//! Sessions that are saved, and looks that outlive a crash.
+//! Tests of saved sessions, and of crash recovery.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::{SCENE, click, kept_look, untouched_window, wait_until, window, window_with};
 
-/// A window with a session file, whose look has been changed, and Ctrl+S pressed.
+/// Creates a window with a session file, changes the look, and presses Ctrl+S.
 fn changed_and_saved(session: &Path) -> Harness<'static, App> {
     let options =
         Options { source: Some(SCENE.into()), session: Some(session.to_owned()), ..Options::default() };
@@ -66,7 +66,7 @@ fn a_session_keeps_what_others_wrote_and_what_it_was() {
     assert_eq!((&tree["_notes"], &tree["shadows"]["glow"]), (&"mine".into(), &3.into()));
     assert_eq!(tree["shadows"]["gain"], 2.0);
     assert_eq!(std::fs::read_to_string(backup(&session)).unwrap(), before);
-    // Again: the backup is what was there last.
+    // Saved again: the backup is the previous session.
     harness.key_press(egui::Key::CloseBracket);
     harness.run_steps(2);
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::S);
@@ -87,7 +87,7 @@ fn a_run_that_was_cut_off_is_offered() {
         };
         window_with(options, Vec2::new(760.0, 900.0))
     };
-    // As a process leaves it that is killed.
+    // Leaves the files of a process that was killed.
     let mut look = window().state().settings().clone();
     look.shadows.gain = 1.75;
     let volume = VolumeRecord::new(Path::new(SCENE), 0, None);

@@ -1,4 +1,4 @@
-//! The window in which a path is typed: it comes where there is no dialog, and letters are for it while it is open.
+//! Tests of the dialog for a typed path: it opens if there is no file dialog, and takes letters while it is open.
 
 use chiaroscuro::app::App;
 use eframe::egui::{Event, Key, Modifiers, Pos2, Vec2};
@@ -9,14 +9,14 @@ use crate::harness::{
     flick, in_one_frame, keys_of, slow_window, stroke, wait_until, wait_until_idle, window,
 };
 
-/// Control with a key, as a keyboard sends it.
+/// Events of a key stroke with Ctrl, as a keyboard sends it.
 fn control(key: Key) -> Vec<Event> {
     let modifiers = |modifiers| vec![Event::ModifiersChanged(modifiers)];
     [modifiers(Modifiers::COMMAND), stroke(key, Modifiers::COMMAND).to_vec(), modifiers(Modifiers::NONE)]
         .concat()
 }
 
-/// Whoever types on at once types into the window.
+/// Keys typed immediately after the shortcut go into the dialog.
 #[test]
 fn a_path_that_is_typed_within_a_frame_is_opened() {
     let mut harness = slow_window(Vec2::new(760.0, 600.0));
@@ -27,7 +27,7 @@ fn a_path_that_is_typed_within_a_frame_is_opened() {
     assert!(harness.state().errors().is_empty());
 }
 
-/// A click beside the field makes no commands of letters.
+/// After a click beside the field, letters are still no commands.
 #[test]
 fn letters_are_no_commands_while_a_path_can_be_typed() {
     let mut harness = window();
@@ -48,12 +48,12 @@ fn letters_are_no_commands_while_a_path_can_be_typed() {
     wait_until_idle(&mut harness);
 }
 
-/// Whether the window for a path is there.
+/// Returns true if the dialog for a typed path is open, with this title.
 fn is_asked(harness: &Harness<'_, App>, title: &str) -> bool {
     harness.query_by_label("Path").is_some() && harness.query_all_by_label(title).count() > 0
 }
 
-/// Where the desktop has no dialog, as here: each request is answered, also one right behind another.
+/// Without a file dialog of the desktop, as here, each request opens the dialog, also one right after another.
 #[test]
 fn a_path_can_be_typed_where_there_is_no_dialog() {
     let mut harness = slow_window(Vec2::new(760.0, 600.0));

@@ -1,4 +1,4 @@
-//! The menu bar and the status bar: names that are too long, and what is said of the renderer's work.
+//! Tests of the menu bar and status bar: long names, and the state of the renderer.
 
 use chiaroscuro::app::{App, Options};
 use eframe::egui::{Role, Vec2};
@@ -7,7 +7,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 use crate::harness::{click, wait_until_idle, window, window_with};
 
-/// The words of a label that contains some.
+/// Text of the first label that contains a string.
 fn words(harness: &Harness<'_, App>, part: &str) -> String {
     let labels = harness.get_all_by_role(Role::Label);
     labels
@@ -33,7 +33,7 @@ fn long_names_of_files_leave_room_for_what_is_said_of_them() {
     assert!(title.contains("defaced · 8×9×10"), "the end of the name stays: {title}");
     let shown = harness.get_by_label(&title).rect();
     assert!(shown.right() <= 640.0 && shown.left() > 180.0, "{shown}");
-    // With room, nothing is left out.
+    // In a wide window nothing is elided.
     harness.set_size(Vec2::new(1280.0, 800.0));
     harness.run_steps(4);
     assert!(words(&harness, facts).starts_with(name));

@@ -1,4 +1,4 @@
-//! The table of labels in the panel, and what it changes in the picture.
+//! Tests of the table of labels, and of its effects on the picture.
 
 use chiaroscuro::app::{App, Options};
 use eframe::egui::{self, Modifiers, Vec2};
@@ -7,10 +7,10 @@ use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::{click, picture, press as press_at, wait_until_idle, window_with};
 
-/// Voxels along each edge of the label map.
+/// Number of voxels along each edge of the label map.
 const N: usize = 24;
 
-/// A window with a label map: slabs of these labels along x, with a margin of 0 around.
+/// Creates a window with a label map: slabs of these labels along x, with a margin of label 0.
 fn window_of(labels: &[u8]) -> (Harness<'static, App>, tempfile::TempDir) {
     let header = format!(
         "NRRD0004\ntype: uint8\ndimension: 3\nsizes: {N} {N} {N}\nencoding: raw\nmodality:=SEG\n\
@@ -30,7 +30,7 @@ fn window_of(labels: &[u8]) -> (Harness<'static, App>, tempfile::TempDir) {
     (window_with(options, Vec2::new(760.0, 1300.0)), folder)
 }
 
-/// Which labels are visible.
+/// Numbers of the labels that are visible.
 fn visible(harness: &Harness<'_, App>) -> Vec<i64> {
     let labels = &harness.state().settings().labels;
     labels.iter().filter(|(_, look)| look.visible).map(|(number, _)| number).collect()
@@ -70,7 +70,7 @@ fn labels_are_hidden_and_shown_by_their_rows() {
     assert_eq!(harness.state().errors(), [""; 0]);
 }
 
-/// The table lies below the picture, with a header over its columns, and what is under the pointer is named.
+/// The table is below the picture, with a header over its columns, and the probe names the label under the pointer.
 #[test]
 fn the_table_is_below_the_picture_and_the_probe_names_labels() {
     let (mut harness, _folder) = window_of(&[9, 9, 9]);
@@ -78,7 +78,7 @@ fn the_table_is_below_the_picture_and_the_probe_names_labels() {
     let row = harness.get_by_label("Show label 9").rect();
     assert!(row.top() > picture.bottom() && row.left() < picture.center().x, "{row} below {picture}");
     for column in ["Show", "Colour", "Label", "Name", "Voxels", "Opacity"] {
-        // The side panel has names and colours, too.
+        // The side panel also has names and colours.
         let mut heads = harness.query_all_by_label(column).map(|node| node.rect());
         let is_over = heads.any(|head| head.bottom() <= row.top() && head.top() > picture.bottom());
         assert!(is_over, "{column}");

@@ -1,4 +1,4 @@
-//! How the window is laid out: the picture alone, tools beside it, what is kept below it, steps and messages as lists.
+//! Tests of the window's layout: picture only, docked tools, the strip of kept views, undo history, and messages.
 
 use chiaroscuro::app::App;
 use chiaroscuro::model::{Kept, Settings};
@@ -16,7 +16,7 @@ fn settings(harness: &Harness<'_, App>) -> Settings {
     harness.state().settings().clone()
 }
 
-/// What a key switches on is set in a section: also when the panel is hidden.
+/// Switching a feature on by a key opens its section, also if the panel is hidden.
 #[test]
 fn the_panel_comes_with_what_a_key_switches_on() {
     let mut harness = window();
@@ -44,7 +44,7 @@ fn the_picture_can_be_alone() {
     harness.key_press(Key::Escape);
     harness.run_steps(3);
     assert_eq!(picture_of(&harness), usual);
-    // One of the panels at a time.
+    // Each panel can be hidden separately.
     harness.key_press_modifiers(Modifiers::SHIFT, Key::N);
     harness.run_steps(12);
     let higher = picture_of(&harness);
@@ -65,14 +65,14 @@ fn tools_are_docked_beside_the_picture_and_float_again() {
     assert!(beside.left() > usual.left() + 200.0 && beside.right() == usual.right(), "{beside}");
     let slice = harness.get_by_label("Slice across z").rect();
     assert!(slice.right() <= beside.left(), "{slice} beside {beside}");
-    // The picture only hides it, too.
+    // Picture-only mode hides the tool as well.
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Backslash);
     harness.run_steps(3);
     assert!(harness.query_by_label("Slice across z").is_none());
     harness.key_press(Key::Escape);
     harness.run_steps(4);
     assert_eq!(picture_of(&harness), beside);
-    // Escape closes what the pointer is over.
+    // Escape closes the tool under the pointer.
     harness.hover_at(picture_of(&harness).center());
     harness.step();
     harness.key_press(Key::Escape);
@@ -112,14 +112,14 @@ fn views_and_looks_are_kept_named_moved_and_compared() {
         settings(harness).kept.iter().map(|kept| kept.name.clone()).collect::<Vec<_>>()
     };
     assert_eq!(names(&harness), ["View 4", "Look 1", "Look 2"]);
-    // A look leaves the view, and a view the look.
+    // Applying a look keeps the view, and applying a view keeps the look.
     click(&mut harness, "Go to Look 1");
     let back = settings(&harness);
     assert_eq!((back.floor.on, &back.camera), (first.floor.on, &turned.camera));
     click(&mut harness, "Go to View 4");
     assert_eq!(settings(&harness).camera, first.camera);
     assert_eq!(settings(&harness).kept.len(), 3, "what is kept stays");
-    // Two looks that are marked are compared.
+    // Two marked looks are compared.
     for look in ["Go to Look 1", "Go to Look 2"] {
         harness.get_by_label(look).click_modifiers(Modifiers::COMMAND);
         harness.run_steps(3);
@@ -127,7 +127,7 @@ fn views_and_looks_are_kept_named_moved_and_compared() {
     harness.run_steps(4);
     wait_until_idle(&mut harness);
     assert!(harness.query_by_label("Difference").is_some() || harness.query_by_label("Divider").is_some());
-    // A view and a look as well, each with its middle in that of its part: nothing lies over both.
+    // A view and a look are compared as well, each centred in its half: no overlay covers both.
     assert!(!harness.state().light_handle_positions().is_empty());
     harness.get_by_label("Go to View 4").click_modifiers(Modifiers::COMMAND);
     harness.run_steps(4);
@@ -136,7 +136,7 @@ fn views_and_looks_are_kept_named_moved_and_compared() {
     harness.get_by_label("Go to View 4").click_modifiers(Modifiers::COMMAND);
     harness.key_press(Key::C);
     wait_until_idle(&mut harness);
-    // The last one is dragged to the front, and that can be undone.
+    // The last one is dragged to the front, which can be undone.
     let from = harness.get_by_label("Go to Look 2").rect().center();
     let to = harness.get_by_label("Go to View 4").rect().left_center();
     drag(&mut harness, from, to - from);
@@ -148,7 +148,7 @@ fn views_and_looks_are_kept_named_moved_and_compared() {
     assert_eq!(names(&harness), ["View 4", "Look 1", "Look 2"]);
     assert!(settings(&harness).kept.iter().filter_map(Kept::as_look).count() == 2);
     wait_until_idle(&mut harness);
-    // They are there for the next volume, too, and drawn anew.
+    // The kept items remain for the next volume, with new thumbnails.
     let ctx = harness.ctx.clone();
     harness.state_mut().open("builtin:sphere:16", &ctx);
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("sphere") && app.is_idle());
@@ -174,7 +174,7 @@ fn steps_are_listed_and_gone_to() {
     harness.run_steps(4);
     let start = settings(&harness);
     assert_eq!((start.floor.on, &start.camera), (first.floor.on, &first.camera));
-    // Said in the status bar until something is changed, and never over the picture.
+    // The undone step is shown in the status bar until the next change, and never over the picture.
     let said = harness.get_by_label("Undone: switch on floor").rect();
     assert!(said.top() > picture_of(&harness).bottom(), "{said:?}");
     assert!(harness.query_by_label_contains(" message").is_none(), "a step is no message");
@@ -220,7 +220,7 @@ fn the_probe_names_a_cause_offers_cures_and_measures() {
     harness.run_steps(4);
     assert!(harness.query_by_label_contains("Click for what helps").is_none(), "it was clicked");
     assert_eq!(settings(&harness), first, "asking changes nothing");
-    // A second place, a little further: how far they are apart.
+    // A second point, a little further away: their distance is shown.
     let other = middle + vec2(-24.0, -10.0);
     press(&mut harness, other, 1);
     harness.run_steps(4);
@@ -229,7 +229,7 @@ fn the_probe_names_a_cause_offers_cures_and_measures() {
     harness.remove_cursor();
     harness.run_steps(4);
     assert!(harness.query_by_label_contains("from the previous place").is_none());
-    // With no light there is a cause and a cure for it.
+    // Without light there is a cause and a remedy.
     harness.key_press(Key::M);
     harness.run_steps(2);
     for light in 0..harness.state().settings().lights.len() {
@@ -270,7 +270,7 @@ fn views_from_the_sides_show_all_of_the_object() {
     };
     let object = outline(&harness);
     for key in [Key::Num1, Key::Num3, Key::Num7, Key::Num9] {
-        // From as near as somebody may have gone.
+        // From as near as the user may have zoomed.
         harness.state_mut();
         let middle = picture_of(&harness).center();
         harness.hover_at(middle);
@@ -283,7 +283,7 @@ fn views_from_the_sides_show_all_of_the_object() {
         let camera = settings(&harness).camera;
         assert!(camera.distance >= object.least_distance(&camera), "{key:?}: {camera:?}");
     }
-    // An orbit of what is framed keeps it in the frame.
+    // Orbiting a framed object keeps it in the frame.
     let middle = picture_of(&harness).center();
     drag(&mut harness, middle, vec2(160.0, 90.0));
     let camera = settings(&harness).camera;

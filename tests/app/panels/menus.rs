@@ -1,4 +1,4 @@
-//! Menus in low windows: they end where the window does, and all of their rows can be reached.
+//! Tests of menus in low windows: they end within the window, and all of their rows can be reached.
 
 use chiaroscuro::app::App;
 use eframe::egui::{Key, Rect, Vec2};
@@ -7,16 +7,17 @@ use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::{turn_wheel, wait_until_idle, window};
 
-/// The sizes of a small laptop's window, and of the smallest window that is of use.
+/// Sizes of a small laptop's window, and of the smallest useful window.
 const SIZES: [Vec2; 2] = [Vec2::new(1280.0, 680.0), Vec2::new(640.0, 400.0)];
 
-/// Opens a menu: of the bar, which comes first, or of the editor.
+/// Opens a menu: of the menu bar, which comes first, or of the editor.
 fn open(harness: &mut Harness<'_, App>, menu: &str) {
     harness.get_all_by_label(menu).next().expect("a menu").click();
     harness.run_steps(6);
 }
 
-/// The row whose name begins so, before its key, and which is shown last, since menus lie over all else.
+/// Rectangle of the menu row whose text contains a string. Menus are drawn over everything else, so it is the last
+/// match.
 fn row_of(harness: &Harness<'_, App>, row: &str) -> Rect {
     harness.get_all_by_label_contains(row).last().expect("it is in the menu").rect()
 }
@@ -50,7 +51,7 @@ fn all_rows_of_menus_are_reached_in_low_windows() {
     wait_until_idle(&mut harness);
 }
 
-/// The keyboard leads to rows that are out of sight.
+/// Keyboard focus scrolls rows into view.
 #[test]
 fn menus_scroll_to_the_row_that_has_the_focus() {
     let mut harness = window();

@@ -1,4 +1,4 @@
-//! The menu of presets, and which of them it marks.
+//! Tests of the menu of presets, and of the marks of those in use.
 
 use chiaroscuro::app::{App, Options};
 use eframe::egui::accesskit::Toggled;
@@ -15,7 +15,7 @@ fn is_marked(harness: &Harness<'_, App>, preset: &str) -> bool {
 #[test]
 fn presets_have_one_name_each_and_the_one_in_use_is_marked() {
     let options = Options { source: Some(SCENE.into()), ..Options::default() };
-    // As high as all of them need.
+    // As high as all presets need.
     let mut harness = window_with(options, vec2(900.0, 1500.0));
     click(&mut harness, "Presets");
     harness.run_steps(4);

@@ -1,4 +1,4 @@
-//! The side panel: nothing that it holds makes it wider than it is, and what is sought in it is found.
+//! Tests of the side panel: no content makes it wider, and settings that are searched for are revealed in it.
 
 use chiaroscuro::app::{App, Options};
 use chiaroscuro::model::{Settings, SkyMode};
@@ -9,7 +9,7 @@ use egui_kittest::kittest::Queryable as _;
 use crate::harness::{SCENE, drag, slow_window, wait_until_idle, window_with};
 use crate::names::unfolded;
 
-/// A window whose first look is changed.
+/// Creates a window whose first look is changed.
 fn window(change: fn(&mut Settings)) -> Harness<'static, App> {
     let adjust = Box::new(move |mut settings: Settings| {
         settings.shadows.keep_balanced = false;
@@ -41,7 +41,7 @@ fn names_of_any_length_leave_the_picture_as_wide_as_it_is() {
 fn the_side_panel_is_as_wide_as_it_is_dragged() {
     let mut harness = window(|_| {});
     let before = picture_of(&harness);
-    // Just beyond the picture, which is dragged to turn it.
+    // The border is just beyond the picture; a drag in the picture would orbit.
     drag(&mut harness, pos2(before.right() + 2.0, before.center().y), vec2(-80.0, 0.0));
     wait_until_idle(&mut harness);
     let after = picture_of(&harness);
@@ -49,7 +49,7 @@ fn the_side_panel_is_as_wide_as_it_is_dragged() {
     assert_eq!(after.left(), before.left());
 }
 
-/// What a key switches on is shown in its section, and a setting that is sought by a word in its row.
+/// A feature switched on by a key is shown in its section, and a setting found by a word in its row.
 #[test]
 fn sections_open_where_something_is_switched_on_or_sought() {
     let mut harness = window(|_| {});
@@ -72,7 +72,7 @@ fn sections_open_where_something_is_switched_on_or_sought() {
     wait_until_idle(&mut harness);
 }
 
-/// The drawings above the sections open them and bring them into sight, those that are open already, too.
+/// Icons above the sections open them and scroll to them, also to those that are open already.
 #[test]
 fn drawings_lead_to_sections() {
     let mut harness = window(|_| {});
@@ -88,8 +88,8 @@ fn drawings_lead_to_sections() {
     wait_until_idle(&mut harness);
 }
 
-/// The title of a section is at the top of the panel when its drawing has led there, or the panel is at its end, however
-/// slow frames are, and whether the section was open or not.
+/// An icon scrolls the title of its section to the top of the panel, or the panel to its end, however slow frames
+/// are, and whether the section was open or not.
 #[test]
 fn drawings_lead_to_the_titles_of_sections() {
     let mut harness = slow_window(Vec2::new(760.0, 600.0));
@@ -123,7 +123,7 @@ fn drawings_lead_to_the_titles_of_sections() {
     wait_until_idle(&mut harness);
 }
 
-/// Where the last section ends, in points of the window.
+/// Bottom of the last section, in points of the window.
 fn end_of_panel(harness: &Harness<'_, App>) -> f32 {
     harness
         .get_by_label("Data")
@@ -132,7 +132,7 @@ fn end_of_panel(harness: &Harness<'_, App>) -> f32 {
         .max(harness.query_by_label("Corrections").map_or(0.0, |row| row.rect().bottom()))
 }
 
-/// Steps back and forward say what they change.
+/// Undo and redo steps are named by their change.
 #[test]
 fn steps_of_the_history_have_names() {
     let mut harness = window(|_| {});
@@ -148,7 +148,7 @@ fn steps_of_the_history_have_names() {
     wait_until_idle(&mut harness);
 }
 
-/// What soft light takes is measured, and said at its other resolutions before one is chosen.
+/// Tooltips state the measured cost of soft light at other resolutions before one is chosen.
 #[test]
 fn tips_say_what_other_resolutions_of_soft_light_take() {
     let mut harness = unfolded(700.0);
@@ -161,7 +161,7 @@ fn tips_say_what_other_resolutions_of_soft_light_take() {
         harness.run_steps(4);
         wait_until_idle(&mut harness);
     }
-    // What was switched off could not be unfolded.
+    // Sections that were switched off could not be expanded.
     for at in 0..harness.get_all_by_label("Advanced").count() {
         harness.get_all_by_label("Advanced").nth(at).expect("as many as before").click();
         harness.run_steps(8);

@@ -1,4 +1,4 @@
-//! The window of slices, on scans of bodies: how they lie on the screen, and how grey they are.
+//! Tests of the slices window on scans of bodies: orientation on the screen, and grey window.
 
 use std::path::{Path, PathBuf};
 
@@ -9,10 +9,10 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 use crate::harness::{click, drag, drag_with, wait_until_idle, window, window_with};
 
-/// Voxels along each edge.
+/// Number of voxels along each edge.
 const N: usize = 24;
 
-/// A ball in a scan of a body whose axes run to these sides, of 16-bit numbers.
+/// Writes a scan of 16-bit numbers of a ball, with grid axes in these anatomical directions.
 fn scan(folder: &Path, directions: &str) -> PathBuf {
     let header = format!(
         "NRRD0005\ntype: int16\ndimension: 3\nsizes: {N} {N} {N}\nendian: little\nencoding: raw\n\
@@ -37,10 +37,10 @@ fn slices_of(source: PathBuf) -> Harness<'static, App> {
     harness
 }
 
-/// The number that a field shows.
+/// Number that a field shows.
 fn number(harness: &Harness<'_, App>, name: &str) -> String {
     let fields = harness.get_all_by_role_and_label(Role::SpinButton, name);
-    // The transfer function, further down, has fields of these names, too.
+    // The transfer function editor, further down, has fields of the same names.
     let field = fields.min_by(|a, b| a.rect().top().total_cmp(&b.rect().top())).expect("a field");
     field.accesskit_node().value().expect("a number")
 }
@@ -59,10 +59,10 @@ fn slices_of_bodies_name_their_sides_and_their_space() {
     for plane in ["Axial · z = 12", "Coronal · y = 12", "Sagittal · x = 12"] {
         harness.get_by_label(plane);
     }
-    // Left, posterior and superior millimetres of the file, to the right and to the front.
+    // The file's left and posterior millimetres, converted to right and anterior.
     harness.get_by_label("mm RAS");
     harness.get_by_label("76.0, 26.0, 44.0");
-    // A quarter to the right is towards the left of the body, where x grows; upwards is its front, where y falls.
+    // A quarter to the right is towards the body's left, where x grows; upwards is its front, where y falls.
     let slice = harness.get_by_label_contains("Slice across z").rect();
     let by = vec2(slice.width() / 4.0, -slice.height() / 4.0);
     drag(&mut harness, slice.center(), by);

@@ -1,4 +1,4 @@
-//! Lighting by a panorama, from the section of the sky.
+//! Tests of lighting by an environment map, chosen in the section of the sky.
 
 use chiaroscuro::model::{SURROUNDINGS, SkyMode};
 use eframe::egui;
@@ -22,7 +22,7 @@ fn a_panorama_is_chosen_and_lights_the_scene() {
     assert_eq!(settings.sky.picture.name, "yard.hdr");
     assert_eq!(settings.lights[0].name, SURROUNDINGS);
     wait_until_idle(&mut harness);
-    // One step back is all of it.
+    // One undo step reverts all of it.
     harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
     harness.run_steps(2);
     assert_eq!(harness.state().settings().lights, before.lights);

@@ -1,4 +1,4 @@
-//! Rows of the side panel: what their reset arrows put back, and how their controls fit.
+//! Tests of the rows of the side panel: their reset buttons, and how their controls fit.
 
 use chiaroscuro::app::App;
 use chiaroscuro::model::Settings;
@@ -37,7 +37,7 @@ fn nothing_that_is_untouched_can_be_reset() {
         click(&mut harness, light);
         assert_eq!(arrows(&harness), 0, "{light}");
     }
-    // Nor of a light that was added.
+    // An added light cannot be reset either.
     harness.get_all_by_label("Add light").last().expect("a button").click();
     harness.run_steps(4);
     assert!(harness.query_by_label("Reset Intensity").is_none());
@@ -70,7 +70,7 @@ fn arrows_of_fields_and_of_sections_put_back_the_first_look() {
     wait_until_idle(&mut harness);
 }
 
-/// Where a widget is.
+/// Rectangle of a widget in the window.
 fn place(harness: &Harness<'_, App>, role: Role, label: &str) -> Rect {
     harness.get_by_role_and_label(role, label).rect()
 }
@@ -96,7 +96,7 @@ fn methods_of_shadows_stand_in_one_row_or_in_a_list() {
     let words = ["Splat", "Voxel", "Sample"];
     let tops: Vec<f32> = words.map(|word| harness.get_by_label(word).rect().top()).to_vec();
     assert!(tops.windows(2).all(|pair| pair[0] == pair[1]), "{tops:?}");
-    // With wide letters in a narrow panel there is a list.
+    // With wide letters in a narrow panel the choice is a list.
     harness.ctx.all_styles_mut(|style| {
         style.text_styles.values_mut().for_each(|font| font.size *= 1.5);
     });

@@ -1,7 +1,7 @@
-//! Panels, editor and windows look as they did, in the dark and in the light theme.
+//! Snapshot tests: panels, editor and windows look unchanged, in the dark and in the light theme.
 //!
-//! The pictures lie beside this file. With `UPDATE_SNAPSHOTS=1` in the environment they are written anew: look
-//! at each before it is committed. What was found lies beside it as `NAME.found.png` after a failure.
+//! The pictures are beside this file. With `UPDATE_SNAPSHOTS=1` in the environment they are written anew: look at
+//! each before it is committed. After a failure the picture that was found is beside them as `NAME.found.png`.
 
 mod sizes;
 
@@ -22,7 +22,7 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/app/snapshots")
 }
 
-/// Whether a picture shows the same as another, for somebody who looks at it.
+/// Compares a picture with its snapshot, up to differences that are not visible; an error says how they differ.
 fn looks_like(found: &RgbaImage, wanted: &RgbaImage) -> Result<(), String> {
     if found.dimensions() != wanted.dimensions() {
         return Err(format!("{:?} pixels, not {:?}", found.dimensions(), wanted.dimensions()));
@@ -34,17 +34,17 @@ fn looks_like(found: &RgbaImage, wanted: &RgbaImage) -> Result<(), String> {
     if count > PIXELS { Err(format!("{count} pixels differ, {PIXELS} may")) } else { Ok(()) }
 }
 
-/// A part of a picture of the window, in whole pixels.
+/// Crops a picture of the window to an area, in whole pixels.
 fn part(window: &RgbaImage, area: Rect) -> RgbaImage {
     let [left, top] = [area.min.x, area.min.y].map(|at| at.max(0.0).round() as u32);
     let [width, height] = [area.width(), area.height()].map(|length| length.round() as u32);
     imageops::crop_imm(window, left, top, width, height).to_image()
 }
 
-/// Points of the dock beside the picture, with its border.
+/// Width of the dock beside the picture with its border, in points.
 const DOCK: f32 = 480.0;
 
-/// Compares a part of the window with its snapshot.
+/// Compares a part of the window with its snapshot, or updates the snapshot.
 fn check(window: &RgbaImage, area: Rect, name: &str, failures: &mut Vec<String>) {
     let found = part(window, area);
     let path = folder().join(format!("{name}.png"));
@@ -60,7 +60,7 @@ fn check(window: &RgbaImage, area: Rect, name: &str, failures: &mut Vec<String>)
     }
 }
 
-/// The two themes, by the names that their snapshots have.
+/// Themes, with the suffixes of their snapshots.
 const THEMES: [(Theme, &str); 2] = [(Theme::Dark, "dark"), (Theme::Light, "light")];
 
 fn in_theme(harness: &mut Harness<'_, App>, theme: Theme) -> RgbaImage {
@@ -68,20 +68,20 @@ fn in_theme(harness: &mut Harness<'_, App>, theme: Theme) -> RgbaImage {
         Theme::Dark => ThemePreference::Dark,
         Theme::Light => ThemePreference::Light,
     });
-    // Nothing is hovered, and nothing fades any more.
+    // No widget is hovered, and nothing fades any more.
     harness.remove_cursor();
     harness.run_steps(12);
     harness.render().expect("the window")
 }
 
-/// Words in an area of the window, and where they are.
+/// Texts in an area of the window, and their rectangles.
 fn words_in(harness: &Harness<'_, App>, area: Rect) -> Vec<(String, Rect)> {
     let labels = harness.get_all_by_role(Role::Label);
     let words = labels.filter_map(|node| Some((node.accesskit_node().value()?, node.rect())));
     words.filter(|(_, rect)| area.contains_rect(*rect)).collect()
 }
 
-/// Puts another word of the window in a word's place, one at a time: each must be noticed, in a picture of an area
+/// Replaces each word by another word of the window, one at a time: each must be noticed, in a picture of an area
 /// that is as large as its snapshot.
 fn changed_words_are_noticed(window: &RgbaImage, area: Rect, words: &[(String, Rect)]) {
     let right = part(window, area);
@@ -117,7 +117,7 @@ fn panels_and_editor() {
         changed_words_are_noticed(&window, side, &words_in(&harness, side));
         let menu = Rect::from_min_max(pos2(0.0, 0.0), pos2(width, picture.top()));
         check(&window, menu, &format!("menu-{suffix}"), &mut failures);
-        // Without the status bar, which says how fast this machine is.
+        // Without the status bar, which shows the speed of this machine.
         let editor = Rect::from_min_max(pos2(0.0, picture.bottom()), pos2(width, height - 26.0));
         check(&window, editor, &format!("editor-{suffix}"), &mut failures);
     }
@@ -139,7 +139,7 @@ fn windows_over_the_picture() {
         harness.key_press_modifiers(modifiers, key);
         harness.run_steps(6);
         if name == "export" {
-            // The folder is where the tests run.
+            // The default folder depends on where the tests run.
             harness.get_by_role_and_label(Role::TextInput, "File").focus();
             harness.run_steps(2);
             harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
@@ -148,7 +148,7 @@ fn windows_over_the_picture() {
         }
         for (theme, suffix) in THEMES {
             let window = in_theme(&mut harness, theme);
-            // Exporting is docked.
+            // The export window is docked.
             let docked = Rect::from_min_max(pos2(0.0, 28.0), pos2(DOCK, 420.0));
             let area =
                 if let Some(window) = harness.query_by_role(Role::Window) { window.rect() } else { docked };
@@ -169,7 +169,7 @@ fn import_of_raw_voxels() {
     wait_until_idle(&mut harness);
     let folder = tempfile::tempdir().expect("a folder");
     ask_about(&mut harness, &scan(folder.path()));
-    // Nothing blinks.
+    // No text cursor blinks.
     harness.get_by_label("Cancel").focus();
     // The slices are read meanwhile.
     std::thread::sleep(std::time::Duration::from_millis(500));

@@ -1,5 +1,5 @@
-//! The whole window but for its picture: at three sizes, with texts as long as they can be, and with wider letters, as of
-//! translations that are longer.
+//! Snapshots of the whole window without its picture: at three sizes, with the longest texts, and with wider letters,
+//! like translations that are longer.
 
 use chiaroscuro::app::{App, Options};
 use chiaroscuro::model::{Kept, Settings, SkyMode};
@@ -12,13 +12,13 @@ use super::{THEMES, check, in_theme};
 use crate::harness::{SCENE, wait_until_idle, window_with};
 use crate::names::unfolded;
 
-/// How much longer translations of English are.
+/// Factor by which translations are longer than English.
 const LONGER: f32 = 1.4;
 
-/// Points between what a panel holds and the window's edge, at least.
+/// Smallest margin between a panel's contents and the window's edge, in points.
 const MARGIN: f32 = 3.0;
 
-/// Points at the bottom where the window says how fast this machine is.
+/// Height of the status bar, in points, which shows the speed of this machine.
 const STATUS: f32 = 26.0;
 
 fn window_of(change: fn(&mut Settings), size: Vec2) -> Harness<'static, App> {
@@ -30,7 +30,7 @@ fn window_of(change: fn(&mut Settings), size: Vec2) -> Harness<'static, App> {
     window_with(Options { source: Some(SCENE.into()), adjust: Some(adjust), ..Options::default() }, size)
 }
 
-/// Names of some two hundred letters, wherever there are names.
+/// Sets names of some two hundred letters, wherever there are names.
 fn with_long_names(settings: &mut Settings) {
     let name = "Überlänge ".repeat(20);
     settings.lights.iter_mut().for_each(|light| light.name.clone_from(&name));
@@ -48,7 +48,7 @@ fn enlarge_letters(harness: &mut Harness<'_, App>) {
     wait_until_idle(harness);
 }
 
-/// Only what lies around the picture.
+/// Blanks out the picture and the status bar.
 fn without_picture(mut window: RgbaImage, picture: Rect) -> RgbaImage {
     let status = window.height() as f32 - STATUS;
     for (x, y, pixel) in window.enumerate_pixels_mut() {
@@ -86,7 +86,7 @@ fn windows_of_three_sizes() {
     assert!(failures.is_empty(), "{failures:#?}");
 }
 
-/// Nothing in the side panel is cut off by letters as wide as those of longer languages.
+/// Letters as wide as those of longer languages are not cut off in the side panel.
 #[test]
 fn wide_letters_are_not_cut_off() {
     let mut harness = unfolded(700.0);
@@ -107,7 +107,7 @@ fn wide_letters_are_not_cut_off() {
     assert!(beyond.is_empty(), "{beyond:#?}");
 }
 
-/// And the picture has the width that it has with short ones.
+/// Long names and wide letters leave the picture as wide as short ones do.
 #[test]
 fn windows_with_long_names_and_wide_letters() {
     let size = Vec2::new(1280.0, 800.0);

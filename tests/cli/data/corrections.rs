@@ -1,11 +1,11 @@
-//! What the command line knows better than the file of a volume.
+//! Tests of corrections of a volume's metadata on the command line.
 
 use serde_json::{Value, json};
 
 use crate::program::Folder;
 use crate::volumes::{header, small_ball};
 
-/// A ball whose voxels are so far apart.
+/// NRRD file of a ball with a given spacing.
 fn ball(spacings: &str) -> Vec<u8> {
     [header(&format!("sizes: 8 8 8\nspacings: {spacings}")).as_bytes(), &small_ball()].concat()
 }
@@ -31,7 +31,7 @@ fn a_corrected_volume_makes_the_picture_of_a_file_that_says_so() {
     );
     assert!(pixels(&folder, "in_um.png") == pixels(&folder, "small.png"), "units are lengths");
 
-    // The picture says how it was made, and of which file; it corrects that file, and no other.
+    // The picture records the corrections and the file; they apply to that file only.
     assert!(folder.succeed("replay corrected.png --check").contains("identical"));
     folder.succeed("render said.nrrd -o again.png --size 48x36 --session corrected.png");
     assert!(pixels(&folder, "again.png") == pixels(&folder, "corrected.png"), "a session restores it");

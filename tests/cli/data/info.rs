@@ -1,4 +1,4 @@
-//! What is known about a volume, the looks that are proposed for it, and what is decided where nobody else does.
+//! Tests of the command `info`: facts about a volume, proposed looks, and automatic decisions.
 
 use serde_json::Value;
 
@@ -58,7 +58,7 @@ fn info_says_what_kind_of_data_it_is_and_what_the_file_says_of_it() {
     assert_eq!(ball["hints"]["modality"], Value::Null);
 }
 
-/// A label map of slabs along x, with so many voxels along each edge: labels 0, 3, 9, 200 and so on.
+/// Writes a label map of 16³ voxels with slabs along x: labels 0, 3, 9, 200 and so on.
 fn slabs(folder: &Folder, name: &str, labels: &[u8]) {
     let n = 16;
     let header = format!(
@@ -105,7 +105,7 @@ fn labels_are_set_by_their_numbers() {
     let (hidden, labels) = render("--set labels.9.visible=false");
     assert_eq!((&labels["9"]["name"], &labels["9"]["visible"]), (&"Lung".into(), &false.into()));
     assert!(hidden != first);
-    // As another kind of data there is no table.
+    // As another kind of data it has no table of labels.
     assert_eq!(render("--as scalar").1, serde_json::json!({}));
 }
 
@@ -150,10 +150,10 @@ fn what_is_named_is_not_decided() {
     assert!(first["output"]["exposure"].as_f64().expect("a number") > 0.0);
     assert_eq!(settings("--set output.exposure=3")["output"]["exposure"], 3.0);
     assert_eq!(settings("--set floor.on=true")["floor"]["on"], true);
-    // Whatever moves, lights that are named stay, and the rest is as it was.
+    // Lights that are set explicitly stay, and everything else is unchanged.
     let moved = settings("--set lights.0.position=[0,0,3]");
     assert_eq!(moved["lights"][0]["position"], serde_json::json!([0.0, 0.0, 3.0]));
-    // A picture without shadows is of the same look.
+    // A picture without shadows has otherwise the same look.
     let mut flat = settings("--shadows off");
     assert_eq!(flat["shadows"]["algorithm"], "off");
     flat["shadows"]["algorithm"] = first["shadows"]["algorithm"].clone();

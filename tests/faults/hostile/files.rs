@@ -1,5 +1,5 @@
-//! The hostile files of all readers of the command line. A new reader adds a line to [`all`]. Transfer functions of
-//! other programs are opened in the window alone, where mutations and `fuzz/` try their readers.
+//! Hostile files for all readers of the command line. A new reader adds a line to [`all`]. Transfer functions of
+//! other programs are opened in the window only, where mutations and `fuzz/` test their readers.
 
 use std::ffi::OsString;
 use std::io::Write as _;
@@ -8,13 +8,13 @@ use std::path::Path;
 use chiaroscuro::export::export_png;
 use chiaroscuro::model::{Record, Settings};
 
-/// A file, and the command that reads it.
+/// Hostile file, and the command that reads it.
 pub(super) struct Hostile {
     pub(super) name: String,
     pub(super) args: Vec<OsString>,
 }
 
-/// Hostile files of every kind, made in a folder; `forbidden` is another one, from which nothing may be opened.
+/// Writes hostile files of every kind into a folder; `forbidden` is another folder, from which nothing may be opened.
 pub(super) fn all(folder: &Path, forbidden: &Path) -> Vec<Hostile> {
     let mut made = Maker { folder, files: Vec::new() };
     let names = names(folder, forbidden);
@@ -24,7 +24,7 @@ pub(super) fn all(folder: &Path, forbidden: &Path) -> Vec<Hostile> {
     made.files
 }
 
-/// Names that lead out of a folder, or to what is no file.
+/// File names that lead out of a folder, or to something that is no file.
 pub(super) fn names(folder: &Path, forbidden: &Path) -> Vec<String> {
     let target = forbidden.join("voxels.raw");
     #[cfg(unix)]
@@ -71,7 +71,7 @@ pub(super) fn names(folder: &Path, forbidden: &Path) -> Vec<String> {
     .collect()
 }
 
-/// Bytes that are small, and large when they are unpacked.
+/// Decompression bomb: small gzip data that expand to many mebibytes of zeros.
 fn bomb(mebibytes: usize) -> Vec<u8> {
     let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
     let zeros = vec![0; 1 << 20];
@@ -87,7 +87,7 @@ struct Maker<'a> {
 }
 
 impl Maker<'_> {
-    /// Adds a file and the command that reads it, where `@` is its name.
+    /// Adds a file and the command that reads it, in which `@` is its name.
     fn add(&mut self, name: &str, contents: &[u8], command: &str) {
         let file = format!("{:03}_{name}", self.files.len());
         std::fs::write(self.folder.join(&file), contents).expect("room");
@@ -100,7 +100,7 @@ impl Maker<'_> {
         self.add("volume.nrrd", &[header.as_bytes(), data].concat(), "info @");
     }
 
-    /// NRRD headers.
+    /// Adds NRRD files with hostile headers.
     fn headers(&mut self, names: &[String]) {
         for name in names {
             let header = format!(
@@ -167,7 +167,7 @@ impl Maker<'_> {
         self.add("binary.nrrd", &[&b"NRRD0004\n"[..], &[0xff; 4096]].concat(), "info @");
     }
 
-    /// Files without a header, whose names or the command line say what they hold.
+    /// Adds files without a header, whose names or options state their layout.
     fn bare_files(&mut self) {
         for size in ["99999999x99999999x99999999", "0x0x0", "1x1x18446744073709551616", "-1x8x8", "8x8", "x"]
         {
@@ -182,7 +182,7 @@ impl Maker<'_> {
         }
     }
 
-    /// Sessions, presets and pictures with a look.
+    /// Adds sessions, presets and pictures with a look.
     fn looks(&mut self, names: &[String]) {
         for name in names {
             let source = serde_json::to_string(name).expect("a text");
@@ -233,7 +233,7 @@ impl Maker<'_> {
         );
     }
 
-    /// A picture that carries a text as its look.
+    /// Adds a picture with a text as its look.
     fn picture(&mut self, record: &str) {
         let path = self.folder.join("made.png");
         export_png([2, 2], &[9; 16], true, Some(record), &path).expect("a picture");

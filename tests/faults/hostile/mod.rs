@@ -1,5 +1,5 @@
-//! Files that were made to do harm, read by the program itself: it refuses them or shows what there is, soon, and opens
-//! nothing that they have no right to.
+//! Tests of hostile files, read by the program itself: it refuses them or shows their data, quickly, and opens no
+//! file that they must not reach.
 
 mod files;
 mod runner;
@@ -8,10 +8,10 @@ mod volumes;
 use self::files::{Hostile, all};
 use self::runner::{Trace, watch};
 
-/// Where files lie that no file may make the program open.
+/// Name of the folder that no file may make the program open.
 const FORBIDDEN: &str = "forbidden-7f3a";
 
-/// Runs one file in so many, the first of them from a place of its own.
+/// Runs every n-th file.
 fn run(every: usize) {
     let folder = tempfile::tempdir().expect("a folder");
     let inside = folder.path().join("inside");
@@ -29,9 +29,9 @@ fn run(every: usize) {
         assert!(!ended.said.contains("panicked"), "{name}: {ended:?}");
         assert!(ended.said.len() < 20_000, "{name} is answered with {} bytes", ended.said.len());
         for line in &ended.opened {
-            // That a link leads there is read from the link.
+            // Reading a link that leads there is allowed.
             assert!(!line.contains(FORBIDDEN) || line.contains("readlink("), "{name}: {line}");
-            // Names of the window system and the like are no network.
+            // Local sockets, such as those of the window system, are no network.
             assert!(!line.contains("connect(") || line.contains("AF_UNIX"), "{name}: {line}");
         }
         counts[usize::from(ended.code == Some(0))] += 1;
@@ -52,7 +52,7 @@ fn no_hostile_file_does_harm() {
     run(1);
 }
 
-/// Where it can be seen what is opened, it is seen.
+/// Guards the tracing itself: where `strace` works, opened files are seen.
 #[test]
 fn what_is_opened_is_seen() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,19 +1,19 @@
-//! Runs the program and looks at what it opens, where the system has a tool for that.
+//! Runner of the program that traces which files it opens, with `strace` where available.
 
 use std::ffi::OsString;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Longest that the program may take over a small file, on a busy machine and while it is watched.
+/// Longest run over a small file, on a busy machine and while it is traced.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// Whether it can be seen what is opened.
+/// True if opened files can be traced.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Trace(bool);
 
 impl Trace {
-    /// Whether `strace` is there and may watch.
+    /// Detects a working `strace`.
     pub(super) fn find() -> Self {
         let tried = Command::new("strace").args(["-e", "trace=file", "true"]).stderr(Stdio::null()).status();
         Self(tried.is_ok_and(|status| status.success()))
@@ -34,17 +34,17 @@ impl std::fmt::Display for Trace {
     }
 }
 
-/// What the program did.
+/// Outcome of a run: exit code, output and traced calls.
 #[derive(Debug)]
 pub(super) struct Ended {
     pub(super) code: Option<i32>,
-    /// Both outputs.
+    /// Standard output and standard error together.
     pub(super) said: String,
-    /// The calls that name files or places in a network, one a line.
+    /// System calls that name files or network addresses, one per line.
     pub(super) opened: Vec<String>,
 }
 
-/// Runs the program in a folder, and fails when it takes too long.
+/// Runs the program in a folder, and fails if it takes too long.
 pub(super) fn watch(folder: &Path, args: &[OsString], trace: Trace) -> Ended {
     let temporary = || tempfile::NamedTempFile::new().expect("a temporary file");
     let (said, calls) = (temporary(), temporary());
@@ -78,7 +78,7 @@ pub(super) fn watch(folder: &Path, args: &[OsString], trace: Trace) -> Ended {
         std::thread::sleep(Duration::from_millis(2));
     };
     let text = |path: &Path| String::from_utf8_lossy(&std::fs::read(path).expect("it is ours")).into_owned();
-    // How the program was started is no call of its own.
+    // The call that starts the program is not its own.
     let opened =
         text(calls.path()).lines().filter(|line| !line.contains("execve(")).map(str::to_owned).collect();
     Ended { code, said: text(said.path()), opened }

@@ -1,4 +1,4 @@
-//! What must hold between pictures of whatever scene.
+//! Relations that must hold between pictures of any scene, each numbered P1 to P15.
 
 use chiaroscuro::data::{Dataset, Samples, ValueRanges};
 use chiaroscuro::gpu::{Picture, RenderOptions};
@@ -8,29 +8,31 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use super::scenes::{SIZE, Scene, Studio, dataset, distance, largest, placed, scene};
 
-/// How far sums and multiples of light may be apart, as a share of the largest: light volumes hold halves, which are
-/// 2⁻¹¹ exact, and a picture looks up a few.
+/// Tolerance of sums and multiples of light, as a share of the largest: light volumes are half floats with a
+/// precision of 2⁻¹¹, and a picture looks up a few.
 const LINEAR: f32 = 2e-3;
 
-/// The same of numbers in other types. Densities of bytes are stored as halves, up to 2⁻¹² off, which is a sixteenth of a
-/// value; those of other types are exact. Curves here may rise from nothing to all within a value.
+/// Tolerance between voxel types, as a share of the largest light. Densities of bytes are stored as half floats, up
+/// to 2⁻¹² off, which is a sixteenth of a value; those of other types are exact. Curves here may rise from 0 to 1
+/// within one value.
 const OTHER_TYPES: f32 = 1e-2;
 
-/// How many pixels may be further apart, and how far, where slabs are as thin as they need to be: whether one is divided
-/// hangs on a limit, to both sides of which a half can be rounded. One pixel in 200 scenes was, by 0.02.
+/// Number of pixels that may differ by more, and by how much, where slabs are adaptive: the subdivision depends on a
+/// limit, to either side of which a half float can be rounded. One pixel in 200 scenes was, by 0.02.
 const OTHERWISE: (usize, f32) = (1, 0.04);
 
-/// How far pictures of the same voxels in another order may be apart, in 255ths: on the mean, and anywhere. Sums are
+/// Tolerance between pictures of the same voxels in another order, in 255ths: on the mean, and anywhere. Sums are
 /// rounded in another order, which is seen to change a byte by 1 and all of them by 0.0026 on the mean in 200 scenes.
 const TURNED: (f64, u8) = (0.01, 2);
 
-/// The same of pictures whose pixels are as large as voxels, of an odd number of voxels the other way round. Those read
-/// a coarser level of the pyramid, whose texels are pairs of voxels, counted from the first: from the other end they are
-/// other pairs, so that the same field is sampled half a texel aside. In noise as coarse as a voxel that changes a pixel
-/// of 768 by up to 14, once in 200 scenes, and all of them by 0.14 on the mean.
+/// Tolerance in 255ths, on the mean and anywhere, between pictures whose pixels are as large as voxels, where an axis
+/// with an odd number of voxels is reversed. They read a coarser level of the pyramid, whose texels are pairs of
+/// voxels, counted from the first: from the other end the pairs differ, so that the same field is sampled half a
+/// texel aside. In noise as coarse as a voxel that changes a pixel of 768 by up to 14, once in 200 scenes, and all of
+/// them by 0.14 on the mean.
 const OTHER_PAIRS: (f64, u8) = (0.25, 20);
 
-/// Voxels with other axes first, and where they lie then: where they lay.
+/// Permutes the axes of voxels; the affine keeps their positions in the world.
 fn permuted(dims: [usize; 3], voxels: &[u8], order: [usize; 3]) -> ([usize; 3], Vec<u8>, DAffine3) {
     let new = order.map(|axis| dims[axis]);
     let strides = [1, dims[0], dims[0] * dims[1]];
@@ -47,7 +49,7 @@ fn permuted(dims: [usize; 3], voxels: &[u8], order: [usize; 3]) -> ([usize; 3], 
     )
 }
 
-/// Voxels with one axis the other way round, and where they lie then: where they lay.
+/// Reverses one axis of voxels; the affine keeps their positions in the world.
 fn reversed(dims: [usize; 3], voxels: &[u8], axis: usize) -> (Vec<u8>, DAffine3) {
     let stride: usize = dims[..axis].iter().product();
     let turned = (0..voxels.len()).map(|at| {
@@ -60,12 +62,12 @@ fn reversed(dims: [usize; 3], voxels: &[u8], axis: usize) -> (Vec<u8>, DAffine3)
     (turned.collect(), DAffine3 { matrix3: DMat3::from_diagonal(scale), translation: back })
 }
 
-/// The largest difference between what two pictures show, in 255ths.
+/// Largest difference between the displayed bytes of two pictures, in 255ths.
 fn steps(left: &Picture, right: &Picture) -> u8 {
     left.shown.iter().zip(&right.shown).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
 }
 
-/// The mean difference, in 255ths.
+/// Mean difference between bytes, in 255ths.
 pub(super) fn mean_steps(left: &[u8], right: &[u8]) -> f64 {
     assert_eq!(left.len(), right.len());
     left.iter().zip(right).map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>() / left.len() as f64
@@ -76,7 +78,7 @@ fn assert_turned(turned: &Picture, first: &Picture, limits: (f64, u8), what: &st
     assert!(mean <= limits.0 && most <= limits.1, "{what}: {mean} on the mean, {most} at most");
 }
 
-/// A picture with half as many columns and rows: means of four.
+/// Picture at half the size: means of four pixels.
 fn halved(picture: &Picture) -> Vec<u8> {
     let [columns, rows] = picture.size.map(|edge| edge as usize);
     let value =
@@ -100,7 +102,8 @@ fn all_relations(seed: u64, studio: &mut Studio) {
         changed
     };
 
-    // P1: all is finite, light is not negative and alpha a share; also around voxels that are no numbers.
+    // P1: all values are finite, light is not negative and alpha is in [0, 1]; also around voxels that are not
+    // finite.
     let mut holes: Vec<f32> = voxels.iter().map(|&voxel| f32::from(voxel)).collect();
     holes[0] = f32::NAN;
     holes[voxels.len() / 2] = f32::INFINITY;
@@ -112,7 +115,7 @@ fn all_relations(seed: u64, studio: &mut Studio) {
         assert!(picture.light.iter().all(is_right), "seed {seed}");
     }
 
-    // P3: what is nowhere opaque is not there.
+    // P3: fully transparent material does not appear.
     let clear = with(&|settings| settings.transfer.points.iter_mut().for_each(|point| point.opacity = 0.0));
     assert_eq!(largest(&studio.draw(&bytes, &clear).light), 0.0, "seed {seed}");
 
@@ -128,12 +131,12 @@ fn all_relations(seed: u64, studio: &mut Studio) {
     let apart = distance(&first.light, &sum);
     assert!(apart < LINEAR, "seed {seed}: {apart}");
 
-    // P8: the same voxels twice as far apart are the same picture.
+    // P8: the same voxels at twice the spacing give the same picture.
     let larger = studio.draw(&dataset(dims, Samples::U8(voxels.clone()), 2.0), &settings);
     let apart = distance(&larger.light, &first.light);
     assert!(apart < LINEAR, "seed {seed}: {apart}");
 
-    // P13: the same numbers in other types are the same picture.
+    // P13: the same numbers in other types give the same picture.
     let words = Samples::U16(voxels.iter().copied().map(u16::from).collect());
     let floats = Samples::F32(voxels.iter().copied().map(f32::from).collect());
     for samples in [words, floats] {
@@ -145,7 +148,7 @@ fn all_relations(seed: u64, studio: &mut Studio) {
         assert!(count <= OTHERWISE.0 && apart < OTHERWISE.1, "seed {seed}: {count} pixels, {apart} at most");
     }
 
-    // P14: a look that was saved is the look.
+    // P14: a look that was saved is loaded unchanged.
     let record = Record::read(&Record::text(&settings, None, None)).expect("a record");
     let (read, warnings) = record.apply(&Settings::default(), &ValueRanges::UNIT).expect("settings");
     assert_eq!((&read, warnings), (&settings, vec![]), "seed {seed}");
@@ -160,8 +163,8 @@ fn all_relations(seed: u64, studio: &mut Studio) {
         studio.draw_as(dataset, &settings, SIZE.map(|edge| edge * 2), &RenderOptions::default())
     };
     let large = twice_as_large(studio, &bytes);
-    // The pixels of a light go through the middle voxel. Of an even number there is none, and one of the two is taken,
-    // which is another one when they are turned.
+    // The light's pixel grid is centred on the middle voxel. With an even number there is none, and one of the two is
+    // taken, which is the other one when the axis is reversed.
     for axis in (0..3).filter(|&axis| dims[axis] % 2 == 1) {
         let (voxels, world) = reversed(dims, &voxels, axis);
         let reversed = placed(dims, Samples::U8(voxels), world);
@@ -170,29 +173,29 @@ fn all_relations(seed: u64, studio: &mut Studio) {
         assert_turned(&twice_as_large(studio, &reversed), &large, TURNED, &format!("{what}, large"));
     }
 
-    // P5: what keeps away more light makes nothing brighter.
+    // P5: higher extinction for light makes nothing brighter.
     let darker = with(&|settings| settings.lighting.scale *= 1.5);
     let darker = studio.draw(&bytes, &darker);
     let gained = darker.light.iter().zip(&first.light).flat_map(|(a, b)| [0, 1, 2].map(|c| a[c] - b[c]));
     let gained = gained.fold(0.0, f32::max);
     assert!(gained <= 1.0 / 255.0, "seed {seed}: {gained}");
 
-    // P10: what is skipped was empty.
+    // P10: empty-space skipping changes nothing.
     let all = RenderOptions { empty_space_skipping: false, ..RenderOptions::default() };
     assert_eq!(studio.draw_as(&bytes, &settings, SIZE, &all).shown, first.shown, "seed {seed}");
 
-    // P12: a part of a picture is that part; a larger picture is the same picture.
+    // P12: a part of a picture equals that part of the whole; a larger picture is the same picture.
     let window = PixelWindow { whole: SIZE, first: [8, 4], size: [16, 12] };
     let options = RenderOptions { part: Some(window), ..RenderOptions::default() };
     let part = studio.draw_as(&bytes, &settings, window.size, &options);
     let row = |y: usize| &first.shown[(4 + y) * 128 + 32..][..64];
     let cut = Picture { shown: (0..12).flat_map(row).copied().collect(), ..part.clone() };
-    // A ray that is counted from another pixel is rounded otherwise.
+    // A ray computed from another origin pixel is rounded differently.
     assert!(steps(&part, &cut) <= 1, "seed {seed}");
     let apart = mean_steps(&halved(&large), &first.shown);
     assert!(apart <= 4.0, "seed {seed}: {apart} steps between sizes");
 
-    // P2 and P15: after all of that, and after a light that went around, the first picture is the first picture.
+    // P2 and P15: after all that, and after a light has gone around, the first picture is reproduced.
     for step in 0..4 {
         let turned = settings.turned(Some(0), f64::from(step) / 4.0);
         studio.draw(&bytes, &turned);

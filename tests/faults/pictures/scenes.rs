@@ -1,4 +1,4 @@
-//! Random volumes, transfer functions, cameras and lights, and what draws them.
+//! Random volumes, transfer functions, cameras and lights, and a renderer for them.
 
 use chiaroscuro::data::{Dataset, Samples, Volume};
 use chiaroscuro::gpu::{Context, Picture, RenderOptions, Renderer};
@@ -11,7 +11,7 @@ use crate::random::Random;
 
 pub(super) const SIZE: [u32; 2] = [32, 24];
 
-/// Voxels of noise that is smooth enough to have surfaces, and a look at them.
+/// Noise volume that is smooth enough to have surfaces, with a look.
 pub(super) struct Scene {
     pub(super) dims: [usize; 3],
     pub(super) voxels: Vec<u8>,
@@ -37,7 +37,7 @@ pub(super) fn scene(seed: u64) -> Scene {
     quality.apply(&mut settings);
     settings.shadows.algorithm = [ShadowAlgorithm::Splat, ShadowAlgorithm::Raycast][random.below(2)];
     settings.shadows.first_touch = random.below(4) == 0;
-    // Light that is cut at 1 is not linear.
+    // Light that is clipped at 1 is not linear.
     (settings.shadows.gain, settings.shadows.balance) = (1.0, 1.0);
     (settings.shading.emission, settings.shading.ambient) = (0.0, 0.0);
     settings.camera.azimuth_deg = share(&mut random) * 360.0;
@@ -62,7 +62,7 @@ pub(super) fn scene(seed: u64) -> Scene {
     Scene { dims, voxels, settings }
 }
 
-/// A number from 0 to 1.
+/// Random number from 0 to 1.
 pub(super) fn share(random: &mut Random) -> f64 {
     random.below(1 << 20) as f64 / f64::from(1 << 20)
 }
@@ -71,12 +71,12 @@ pub(super) fn dataset(dims: [usize; 3], samples: Samples, spacing_mm: f64) -> Da
     placed(dims, samples, DAffine3::from_mat3(DMat3::from_diagonal(DVec3::splat(spacing_mm))))
 }
 
-/// Voxels that lie anywhere in the world.
+/// Dataset of voxels with any index-to-world affine.
 pub(super) fn placed(dims: [usize; 3], samples: Samples, world_from_index: DAffine3) -> Dataset {
     Dataset::new(Volume::new("noise", dims, world_from_index, samples).expect("a volume"))
 }
 
-/// Draws with one renderer, one scene after another.
+/// Renderer that draws one scene after another.
 pub(super) struct Studio(Renderer);
 
 impl Studio {
@@ -103,7 +103,7 @@ pub(super) fn largest(light: &[[f32; 4]]) -> f32 {
     light.iter().flatten().copied().fold(0.0, f32::max)
 }
 
-/// The largest difference between the colours of two pictures, as a share of the largest colour.
+/// Largest difference between the colours of two pictures, as a share of the largest colour.
 pub(super) fn distance(left: &[[f32; 4]], right: &[[f32; 4]]) -> f32 {
     let apart = left.iter().zip(right).flat_map(|(a, b)| [0, 1, 2].map(|c| (a[c] - b[c]).abs()));
     apart.fold(0.0, f32::max) / largest(right).max(1e-6)

@@ -1,4 +1,4 @@
-//! Adapters that allow less than ours: a volume is shown whole, or with fewer voxels, or refused in words.
+//! Tests of adapters with lower limits: a volume is shown at full resolution, downsampled, or refused with a message.
 
 use chiaroscuro::data::load::{LoadControl, LoadOptions};
 use chiaroscuro::data::{Dataset, open};
@@ -9,11 +9,11 @@ use super::relations::mean_steps;
 
 const SIZE: [u32; 2] = [96, 72];
 
-/// How far a picture of as many voxels may be from that of our adapter, in 255ths on the mean.
+/// Largest difference from the picture of the full adapter at the same resolution, in 255ths on the mean.
 const SAME: f64 = 2.0;
 
-/// Longest axis of a volume, largest buffer and largest binding, in MiB. WebGPU promises 2048 texels, 256 MiB and
-/// 128 MiB; less than that is what a driver says that lacks memory.
+/// Longest axis of a volume, largest buffer and largest binding, in MiB. WebGPU guarantees 2048 texels, 256 MiB and
+/// 128 MiB; drivers without enough memory report less.
 const LIMITS: [(u32, u64, u64); 8] = [
     (2048, 256, 128),
     (2048, 256, 1),
@@ -25,7 +25,7 @@ const LIMITS: [(u32, u64, u64); 8] = [
     (64, 1, 1),
 ];
 
-/// Our adapter, opened with lower limits.
+/// Opens this machine's adapter with lower limits.
 fn context((longest, buffer, binding): (u32, u64, u64)) -> Context {
     let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
     let instance = wgpu::Instance::new(descriptor);
@@ -41,7 +41,7 @@ fn context((longest, buffer, binding): (u32, u64, u64)) -> Context {
     Context::new(&adapter, device, queue).expect("the same features")
 }
 
-/// Draws volumes by both engines with such limits.
+/// Draws volumes by both engines with these limits.
 fn small_adapters(names: &[&str], limits: &[(u32, u64, u64)]) {
     let full = Context::headless().expect("an adapter");
     let mut at_home = Renderer::new(&full).expect("a renderer");
@@ -53,7 +53,7 @@ fn small_adapters(names: &[&str], limits: &[(u32, u64, u64)]) {
         for engine in [Engine::Gather, Engine::Scatter] {
             let mut settings = auto::first_settings(dataset.volume(), dataset.histogram());
             settings.sampling.engine = engine;
-            // What is refused is refused before it is worked on; what is not takes the time that it takes.
+            // Refusals come before any work; large volumes that are not refused would take too long.
             if dataset.volume().dims()[0] > 200 && engine == Engine::Scatter {
                 continue;
             }

@@ -1,4 +1,4 @@
-//! Lights that have a size against the reference: their volumes, rays to them, and the floor below.
+//! Area lights against the reference: light volumes, near-field rays, and the floor below.
 
 use chiaroscuro::gpu::Renderer;
 use chiaroscuro::model::{
@@ -17,7 +17,7 @@ use crate::thresholds::{COMBINED_NORMALS, SAME_WEIGHTS};
 
 const N: usize = 22;
 
-/// A disc far away, a window, and a ball near by.
+/// Look with a distant disc, a rectangle, and a ball close by.
 fn look() -> Settings {
     let mut settings = scenes::look();
     let light = |kind, position| scenes::light(kind, position);
@@ -73,7 +73,7 @@ fn scattered() {
     check("scattered", &settings);
 }
 
-/// One volume for all lights is as fine as the others are, whatever the resolution of lights that have a size.
+/// Combined light has the same resolution as per-light volumes, whatever the resolution of area lights.
 #[test]
 fn in_one_volume_for_all() {
     let mut settings = look();
@@ -109,7 +109,7 @@ fn mistakes_in_them_are_noticed() {
         assert!(disagree_in(&settings, N, from, to, Fault::None), "{to:?} for {from:?} is not noticed");
     }
     settings.lights[0].angle_deg = 80.0;
-    // Rays nearby that go into the matter below which the middle has set.
+    // Near-field rays that enter the material below the terminator of the light's centre.
     let (from, to) = ("half_width * weight;", "half_width * 0.0;");
     in_shader("eye/gather.wgsl", from);
     assert!(!disagree_in(&settings, N, "\u{0}", "", Fault::None));
@@ -123,7 +123,7 @@ fn mistakes_in_them_are_noticed() {
         ("light.area_up * across.y", "light.area_up * across.x"),
         ("return sum / f32(light.points);", "return sum / f32(light.points + 1u);"),
         ("shading.shininess * width / 16.0", "shading.shininess * width / 4.0"),
-        // What has risen shines as if from the middle; what has not counts, where shadows are weak.
+        // The visible part of the light shines as if from the centre; the rest counts where shadows are weak.
         ("disc.y * half_width, disc.x", "max(facing, 0.0), disc.x"),
         ("disc.y * half_width, disc.x", "disc.y * half_width, 1.0"),
         ("root * (2.0 + u * u) / 3.0", "root * (2.0 + u) / 3.0"),
@@ -133,7 +133,7 @@ fn mistakes_in_them_are_noticed() {
     }
 }
 
-/// Whether the picture of a damaged shader is another than the reference's.
+/// Returns true if the picture of a damaged shader differs from the reference's.
 fn pictures_differ(settings: &Settings, from: &str, to: &str) -> bool {
     let loaded = Dataset::new(scenes::creature(N, DVec3::ONE));
     let mut renderer = damaged(from, to);

@@ -1,4 +1,4 @@
-//! Light that bounces against the reference: the volume of it, and pictures.
+//! Multiple scattering against the reference: the volume of scattered light, and pictures.
 
 use chiaroscuro::data::{Dataset, Volume};
 use chiaroscuro::model::{
@@ -28,7 +28,7 @@ fn creature() -> Volume {
     scenes::creature(N, DVec3::new(1.0, 1.0, 1.4))
 }
 
-/// Under three lights, one of which has a size, and a sky, and giving off light itself.
+/// Look with three lights, one of them an area light, a sky, and emission.
 fn everything() -> Settings {
     let mut settings = bouncing(scenes::look());
     settings.lights[0].color = [1.0, 0.8, 0.6];
@@ -55,7 +55,7 @@ fn cut() -> Settings {
     settings
 }
 
-/// The same where all light has one colour and matter is grey: the renderer follows one number in place of three.
+/// Look with lights of one colour and grey material, for which the renderer traces one channel in place of three.
 fn one_color() -> Settings {
     const COLOR: [f32; 3] = [0.6, 1.0, 0.8];
     let mut settings = everything();
@@ -67,7 +67,7 @@ fn one_color() -> Settings {
     settings
 }
 
-/// The light of a reference as the GPU lays it out.
+/// Scattered light of a reference in the memory layout of the GPU.
 fn flat(bounced: &Bounced) -> Vec<f64> {
     let [r, g, b] = &bounced.light;
     (0..r.len()).flat_map(|at| [r[at], g[at], b[at], 1.0]).collect()
@@ -77,7 +77,7 @@ fn light(volume: &Volume, settings: &Settings) -> Vec<f64> {
     damaged_light(("\u{0}", ""), volume, settings)
 }
 
-/// The same of a renderer whose shaders have another text in place of one.
+/// Scattered light of a renderer with a text in its shaders replaced.
 fn damaged_light((from, to): (&str, &str), volume: &Volume, settings: &Settings) -> Vec<f64> {
     let mut renderer = damaged(from, to);
     flat32(&renderer.bounced(&Dataset::new(volume.clone()), settings).expect("light is read back"))
@@ -187,8 +187,8 @@ fn pictures_with_light_that_bounces() {
     check("back", &forward);
 }
 
-/// All light within matter, whether or not it has bounced. Random walks know nothing of blocks' rays, of bounces or of how
-/// their end is told.
+/// All light within material, scattered or not. Random walks are independent of rays through blocks, bounces and
+/// their extrapolation.
 #[test]
 fn light_is_what_random_walks_say() {
     const WALKS: u32 = 20_000;
@@ -214,7 +214,7 @@ fn light_is_what_random_walks_say() {
         let medium = reference.medium();
         let before = reference.unscattered(&medium, 64);
         let found = light(&volume, &settings);
-        // Every so many blocks, some of them at the faces of the grid.
+        // Every 311th block, some of them at the faces of the grid.
         let at: Vec<usize> = (0..medium.extinction.len()).step_by(311).collect();
         let mut squares = 0.0;
         let mut sum = 0.0;

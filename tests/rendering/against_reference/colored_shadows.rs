@@ -1,4 +1,4 @@
-//! Coloured shadows against the reference: each colour of light is followed by itself, on both sides.
+//! Coloured shadows against the reference: each colour of light is traced separately, on both sides.
 
 use chiaroscuro::gpu::{Attenuation, RenderOptions, Renderer};
 use chiaroscuro::model::{
@@ -18,7 +18,7 @@ use crate::thresholds::{BYTES, COMBINED_NORMALS, SAME_WEIGHTS};
 
 const N: usize = 22;
 
-/// Soft parts of different hues under two lights.
+/// Look with soft parts of different hues under two lights.
 fn look() -> Settings {
     let mut settings = scenes::look();
     settings.shadows.transmission = 0.9;
@@ -34,10 +34,10 @@ fn look() -> Settings {
     settings
 }
 
-/// No mistake.
+/// Replacement that leaves the shaders unchanged.
 const RIGHT: (&str, &str) = ("\u{0}", "");
 
-/// How the volumes of lights, the picture and the floor differ from the reference's, with a text in shaders replaced.
+/// Differences of light volumes, picture and floor from the reference's, with a text in the shaders replaced.
 fn failures(settings: &Settings, (from, to): (&str, &str)) -> Vec<String> {
     let loaded = Dataset::new(scenes::creature(N, DVec3::new(1.0, 1.0, 1.3)));
     let mut renderer = damaged(from, to);
@@ -67,7 +67,7 @@ fn failures(settings: &Settings, (from, to): (&str, &str)) -> Vec<String> {
     failures
 }
 
-/// All of the volume of a light.
+/// Volume of one light, filled everywhere.
 fn light_volume(
     renderer: &mut Renderer,
     loaded: &Dataset,
@@ -177,7 +177,7 @@ fn one_volume_for_all_lights_has_the_colours() {
     compare("one volume for all", &all, &each, limit).unwrap_or_else(|err| panic!("{err}"));
 }
 
-/// Under a sky, which all matter attenuates alike, and beside light that bounces.
+/// A sky, which all material attenuates alike, beside light that is scattered.
 #[test]
 fn skies_are_attenuated_alike() {
     let mut settings = look();
@@ -186,7 +186,7 @@ fn skies_are_attenuated_alike() {
     check("a sky", &settings);
 }
 
-/// Matter of one grey has grey shadows, and the same picture as with the setting off.
+/// Grey material has grey shadows, and the same picture as with the setting off.
 #[test]
 fn grey_matter_has_grey_shadows() {
     let mut settings = look();

@@ -1,5 +1,5 @@
-//! The GPU against the independent f64 reference: stage by stage with the same weights, and
-//! against the paper's literal footprints.
+//! The gathering engine against the independent f64 reference: stage by stage with the same weights, and against the
+//! paper's literal footprints.
 
 use super::{SIZE, check_against, round_to_f16};
 use crate::common::{Dataset, attenuation, context, render};
@@ -14,7 +14,7 @@ use chiaroscuro::model::{
 use chiaroscuro::reference::{Options, Reference, Weights};
 use glam::DVec3;
 
-/// Sheets, light volumes and picture of one look, each against the reference.
+/// Compares sheets, light volumes and picture of one look with the reference.
 fn check(name: &str, spacing_mm: DVec3, settings: &Settings) {
     let loaded = Dataset::new(scenes::creature(8, spacing_mm));
     assert_eq!(
@@ -55,7 +55,7 @@ fn a_light_inside_the_volume() {
     check("light inside", DVec3::ONE, &settings);
 }
 
-/// Compares slabs of a kind as they are, where kernels are stretched, and cut by a plane.
+/// Compares slabs of a kind unchanged, with stretched kernels, and cut by a plane.
 fn check_slabs(name: &str, mut settings: Settings) {
     check(name, DVec3::ONE, &settings);
     settings.sampling.slab = 1.6;
@@ -143,7 +143,7 @@ fn several_lights_and_every_cure_for_darkness() {
 #[test]
 fn kernels_stretched_by_small_pictures_and_near_lights() {
     let mut settings = scenes::look();
-    // Far away: pixels are two to three voxels wide.
+    // Distant: pixels are two to three voxels wide.
     settings.camera.distance = 14.0;
     settings.lights = vec![scenes::light(LightKind::Perspective, [1.9, -1.5, 1.4])];
     check("stretched", DVec3::ONE, &settings);
@@ -172,14 +172,14 @@ fn a_frame_in_a_narrow_picture() {
         let found = flat32(&render(&mut renderer, &loaded, &settings, size).light);
         compare(&format!("{projection:?}"), &found, &expected, SAME_WEIGHTS)
             .unwrap_or_else(|err| panic!("{err}"));
-        // It is another picture than that of an angle of the height.
+        // The picture differs from that of a field of view over the height.
         settings.camera.fit = Fit::Height;
         let cut_off = flat32(&render(&mut renderer, &loaded, &settings, size).light);
         assert!(compare("cut off", &cut_off, &expected, SAME_WEIGHTS).is_err(), "{projection:?}");
     }
 }
 
-/// Lights of both kinds, one of them near, and voxels that are no cubes.
+/// Look with lights of both kinds, one of them close, and anisotropic voxels.
 fn rays(algorithm: ShadowAlgorithm) -> Settings {
     let mut settings = scenes::look();
     settings.shadows.algorithm = algorithm;
@@ -227,7 +227,7 @@ fn hoods_cameras_lights_and_densities() {
     }
 }
 
-/// The picture by the paper's literal footprints in f64, against the GPU's.
+/// Compares the GPU's picture with that of the paper's literal footprints in f64.
 fn check_literal(n: usize, kind: LightKind, position: [f64; 3]) {
     let mut settings = scenes::look();
     settings.lights = vec![scenes::light(kind, position)];
@@ -260,7 +260,7 @@ fn literal_footprints_of_a_large_volume() {
     check_literal(128, LightKind::Perspective, [2.0, -1.3, 2.4]);
 }
 
-/// Gradients from neighbouring sheets: thin slabs, perspective, voxels that are no cubes.
+/// Gradients from neighbouring sheets: thin slabs, perspective, anisotropic voxels.
 #[test]
 fn gradients_from_neighbouring_sheets() {
     let mut settings = scenes::look();
@@ -272,7 +272,7 @@ fn gradients_from_neighbouring_sheets() {
     check("gradients from sheets, near", DVec3::ONE, &settings);
 }
 
-/// Gradients of the kernel itself, and of one that is stretched by less than, and more than, a voxel.
+/// Gradients of the kernel itself, unstretched and stretched by less than, and more than, a voxel.
 #[test]
 fn gradients_of_the_kernel() {
     let mut settings = scenes::look();
@@ -282,7 +282,7 @@ fn gradients_of_the_kernel() {
     check("gradients of the kernel, far", DVec3::ONE, &settings);
 }
 
-/// A byte per voxel: 256 steps, which filtering smooths.
+/// Light volumes of a byte per voxel: 256 steps, which filtering smooths.
 #[test]
 fn light_volumes_of_bytes() {
     let loaded = Dataset::new(scenes::creature(48, DVec3::ONE));
@@ -305,7 +305,8 @@ fn light_volumes_of_bytes() {
     assert_eq!(added, voxels, "the earlier volume is kept, and this one has a byte per voxel");
 }
 
-/// Voxels are classified before the kernel spreads them, in both passes; far away the blurred volume is.
+/// Voxels are classified before the kernel spreads them, in both passes; at a distance the blurred volume is
+/// classified.
 #[test]
 fn pre_classified_voxels() {
     let mut settings = scenes::look();

@@ -1,4 +1,4 @@
-//! Label maps that are shown by a table of looks.
+//! Label maps with a table of looks, against the reference.
 
 use chiaroscuro::data::{Samples, Volume};
 use chiaroscuro::gpu::Renderer;
@@ -11,10 +11,10 @@ use crate::compare::{compare, flat32};
 use crate::scenes;
 use crate::thresholds::SAME_WEIGHTS;
 
-/// The values of the creature from which the next label begins.
+/// Values of the creature at which the labels change.
 const STEPS: [u8; 4] = [20, 80, 150, 200];
 
-/// The creature cut into labels: numbers by the count of steps that a voxel's value has passed.
+/// Label map of the creature: the label is chosen by the number of steps below a voxel's value.
 fn labelled(numbers: [u8; 5]) -> Volume {
     let n = 32;
     let creature = scenes::creature(n, DVec3::ONE);
@@ -25,7 +25,7 @@ fn labelled(numbers: [u8; 5]) -> Volume {
     Volume::with_spacing("labels", [n; 3], DVec3::ONE, Samples::U8(voxels.collect())).expect("a volume")
 }
 
-/// One of the labels is hidden, and one lets light through.
+/// Look that hides one of the labels, and in which one is transparent.
 fn look(numbers: [u8; 5]) -> Settings {
     let mut labels = LabelTable::default();
     for (at, number) in numbers.into_iter().enumerate() {
@@ -45,7 +45,7 @@ fn labels_are_classified_by_their_table_before_they_are_spread() {
     check_volume("labels", labelled(numbers), &settings, Some(round_to_f16));
 }
 
-/// To the bit, but for the order of numbers, which the table's look-ups round differently.
+/// Label numbers change no bit unless their order changes, which the table's look-ups round differently.
 #[test]
 fn numbers_of_labels_change_no_pixel() {
     let mut renderer = Renderer::new(&context()).expect("a renderer");

@@ -1,5 +1,5 @@
-//! The truest level of quality beside the limit: rays from every sample in f64, through slabs so thin that thinner
-//! ones change nothing, with the slope of the kernel for normals.
+//! Quality *Exact* against its limit: rays from every sample in f64, through slabs so thin that thinner ones change
+//! nothing, with the gradient of the kernel for normals.
 
 use chiaroscuro::data::synthetic::builtin;
 use chiaroscuro::gpu::Renderer;
@@ -10,10 +10,10 @@ use crate::common::{Dataset, context, render};
 use crate::scenes;
 use crate::thresholds::{EXACT_OF_LIMIT, LIMITS_AGREE};
 
-/// Pixels are narrower than voxels, so that no kernel is stretched.
+/// Size of the picture, at which pixels are narrower than voxels, so that no kernel is stretched.
 const SIZE: [u32; 2] = [64, 64];
 
-/// The limit, with slabs of `1 / parts` voxel.
+/// Limit picture, with slabs of `1 / parts` voxel.
 fn limit(loaded: &Dataset, settings: &Settings, parts: f64) -> Vec<[f64; 4]> {
     let mut settings = settings.clone();
     Quality::Exact.apply(&mut settings);
@@ -23,7 +23,7 @@ fn limit(loaded: &Dataset, settings: &Settings, parts: f64) -> Vec<[f64; 4]> {
     Reference::new(loaded.volume(), &settings, Options::default()).picture(SIZE, &[None])
 }
 
-/// Root mean square over the object of what is seen before black, in steps of 8 bits.
+/// Root mean square of the difference over the object before black, in steps of 8-bit sRGB.
 fn distance(found: &[[f64; 4]], limit: &[[f64; 4]]) -> f64 {
     let steps = |c: f64| {
         let c = c.clamp(0.0, 1.0);

@@ -1,4 +1,4 @@
-//! The GPU against the independent f64 reference, and proof that the comparison notices mistakes.
+//! Tests of the GPU against the independent f64 reference, and proof that the comparison detects mistakes.
 
 use chiaroscuro::data::Volume;
 use chiaroscuro::gpu::Renderer;
@@ -29,8 +29,8 @@ fn round_to_f16(value: f32) -> f32 {
     half::f16::from_f32(value).to_f32()
 }
 
-/// Sheets, light volumes and picture of one look at one size, each against the reference, with densities stored as
-/// `rounding` says.
+/// Compares sheets, light volumes and picture of one look at one size with the reference, with densities rounded by
+/// `rounding`.
 pub(crate) fn check_against(
     name: &str,
     n: usize,
@@ -41,7 +41,7 @@ pub(crate) fn check_against(
     check_volume(name, scenes::creature(n, spacing_mm), settings, rounding);
 }
 
-/// The same of any volume.
+/// Compares sheets, light volumes and picture of any volume with the reference.
 pub(crate) fn check_volume(name: &str, volume: Volume, settings: &Settings, rounding: Option<Rounding>) {
     let loaded = Dataset::new(volume);
     let context = context();
@@ -54,7 +54,7 @@ pub(crate) fn check_volume(name: &str, volume: Volume, settings: &Settings, roun
         if !settings.shadows.algorithm.has_volume() {
             continue;
         }
-        // Sheets are those of points.
+        // Sheets are compared for point lights only.
         let is_point = settings.lights[light].shape == LightShape::Point;
         let splats = settings.shadows.algorithm == ShadowAlgorithm::Splat && is_point;
         let sheets = if splats { reference.light_sheets(light) } else { Vec::new() };

@@ -1,4 +1,4 @@
-//! Deliberate mistakes in a shader or in the reference, each of which the comparison must notice.
+//! Mutation tests: deliberate mistakes in a shader or in the reference, each of which the comparison must detect.
 
 use chiaroscuro::data::Volume;
 use chiaroscuro::gpu::ShaderLibrary;
@@ -16,8 +16,8 @@ use crate::thresholds::SAME_WEIGHTS;
 
 const SIZE: [u32; 2] = [64, 64];
 
-/// A look in which every mistake shows: steep opacities, a wide angle, a near light, highlights, a
-/// kernel whose weights do not sum to one by themselves.
+/// Look in which every mistake is visible: steep opacities, a wide angle, a near light, highlights, a kernel whose
+/// weights do not sum to one.
 fn look() -> Settings {
     let mut settings = scenes::look();
     settings.camera = Camera { distance: 2.2, fov_y_deg: 80.0, ..settings.camera };
@@ -29,24 +29,24 @@ fn look() -> Settings {
     settings
 }
 
-/// Light volume and picture of a damaged GPU path against a damaged reference.
+/// Returns true if light volume and picture of a damaged GPU path differ from those of a damaged reference.
 fn disagree(from: &str, to: &str, fault: Fault) -> bool {
     disagree_with(Engine::Gather, from, to, fault)
 }
 
-/// The same with one of the engines.
+/// Compares a damaged GPU path with a damaged reference, for one of the engines.
 fn disagree_with(engine: Engine, from: &str, to: &str, fault: Fault) -> bool {
     let mut settings = look();
     settings.sampling.engine = engine;
     disagree_in(&settings, if engine == Engine::Scatter { 28 } else { 40 }, from, to, fault)
 }
 
-/// The same with a look of its own, of a creature of n³ voxels.
+/// Compares a damaged GPU path with a damaged reference, for a given look and a creature of n³ voxels.
 pub(super) fn disagree_in(settings: &Settings, n: usize, from: &str, to: &str, fault: Fault) -> bool {
     disagree_about(scenes::creature(n, DVec3::ONE), settings, from, to, fault)
 }
 
-/// The same of any volume.
+/// Compares a damaged GPU path with a damaged reference, for a given look and volume.
 fn disagree_about(volume: Volume, settings: &Settings, from: &str, to: &str, fault: Fault) -> bool {
     let loaded = Dataset::new(volume);
     let mut renderer = damaged(from, to);
@@ -63,7 +63,7 @@ fn disagree_about(volume: Volume, settings: &Settings, from: &str, to: &str, fau
     light.is_err() || picture.is_err()
 }
 
-/// A mutation must change the shader that it is meant for: a text that is not there proves nothing.
+/// Fails if a mutation's text is not in its shader: a replacement of missing text proves nothing.
 pub(crate) fn in_shader(shader: &str, from: &str) {
     let source = ShaderLibrary::source(shader, wgpu::TextureFormat::R16Float, wgpu::TextureFormat::R16Float)
         .expect("the shader is there");
@@ -96,7 +96,8 @@ fn rays_that_end_a_step_before_the_light() {
     assert!(disagree_in(&settings, 40, from, to, Fault::None), "the comparison does not notice");
 }
 
-/// What a sum of tents misses least: light splatted back with the kernel of the light pass.
+/// Look of the paper, with light splatted back by the kernel of the light pass, whose sums differ from 1 more than a
+/// tent's.
 fn paper_look() -> Settings {
     let mut settings = look();
     scenes::paper(&mut settings);
@@ -115,7 +116,7 @@ fn reference_weights_not_divided() {
     assert!(disagree_in(&paper_look(), 40, "\u{0}", "", Fault::NoDivision), "the comparison does not notice");
 }
 
-/// Material that goes on behind the faces of the grid, and through missing voxels; normals that do not look there.
+/// Material that continues behind the faces of the grid, and through missing voxels; normals that ignore these faces.
 #[test]
 fn ends_of_data_that_are_not_seen() {
     let presence = "return presence_at(ray.origin + ray.direction * depth, kernel_level(frame, depth));";
@@ -134,7 +135,7 @@ fn ends_of_data_that_are_not_seen() {
             "the comparison does not notice {to:?} for {from:?}"
         );
     }
-    // Two faces that are within reach of one kernel, of which only one is asked.
+    // Two faces within the radius of one kernel, of which only one is tested.
     let both = "max(shares_inside(before / width) + shares_inside(behind / width) - 1.0, vec3f(0.0))";
     for (from, is_noticed) in [(both, true), ("\u{0}", false)] {
         let nearer = "shares_inside(min(before, behind) / width)";
@@ -145,8 +146,8 @@ fn ends_of_data_that_are_not_seen() {
     }
 }
 
-/// Opacity that rises with density and falls again, so that surfaces have both sides; a light far away, whose sheets
-/// are as fine as voxels.
+/// Look with opacity that rises with density and falls again, so that surfaces have two sides; with a distant light,
+/// whose sheets have the resolution of voxels.
 fn sided_look() -> Settings {
     let point = |value, opacity| ControlPoint::new(value, [0.9, 0.7, 0.5], opacity);
     let mut settings = look();
@@ -228,7 +229,7 @@ fn damaged_gradients_are_noticed() {
     }
 }
 
-/// Slabs that are as thin as they need to be.
+/// Look with slabs by need, which are subdivided adaptively.
 fn look_by_need() -> Settings {
     let mut settings = look();
     settings.sampling.slabs = Slabs::ByNeed;
@@ -243,15 +244,15 @@ fn undamaged_slabs_by_need_agree() {
 #[test]
 fn damaged_slabs_by_need_are_noticed() {
     let damages = [
-        // As dense as thin ones.
+        // As dense as thin slabs.
         ("found.material.a * f32(width)", "found.material.a"),
         // Sampled at their front.
         ("f32(start) + 0.5 * f32(width - 1)", "f32(start)"),
-        // Divided behind what hides them.
+        // Subdivided behind occluding material.
         ("var share = t * (1.0 - exp", "var share = (1.0 - exp"),
         ("const MUCH = 0.125", "const MUCH = 0.25"),
         ("const CURVED = 1.25", "const CURVED = 0.5"),
-        // Blind to what lies between this sample and a denser one.
+        // Ignoring material between this sample and a denser one.
         ("found.density - change, found.density + change", "found.density, found.density"),
     ];
     for (from, to) in damages {

@@ -1,4 +1,4 @@
-//! Proof that the comparison with the reference notices mistakes in pre-integrated slabs.
+//! Mutation tests of pre-integrated slabs: the comparison with the reference detects mistakes.
 
 use chiaroscuro::model::{Settings, Slabs};
 use chiaroscuro::reference::Fault;
@@ -6,7 +6,7 @@ use chiaroscuro::reference::Fault;
 use super::mutations::{disagree_in, in_shader};
 use crate::scenes;
 
-/// Slabs through which opacity is integrated.
+/// Look with pre-integrated slabs for the eye.
 fn look() -> Settings {
     let mut settings = scenes::look();
     settings.sampling.slabs = Slabs::Preintegrated;
@@ -25,7 +25,7 @@ fn damaged_preintegrated_slabs_are_noticed() {
         ("0.25 * length * (a.there + b.there)", "0.5 * length * (a.there + b.there)"),
         // Half of each step left out.
         ("behind_front * exp(-back)", "behind_front"),
-        // Shaded a voxel behind where its opacity lies.
+        // Shaded a voxel behind the opacity's position.
         ("layer.places / layer.share", "layer.places / layer.share + 2.0"),
         // Shaded after each step.
         ("const LAYER_STEPS = 4", "const LAYER_STEPS = 1"),

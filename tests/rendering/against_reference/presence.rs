@@ -1,4 +1,4 @@
-//! Where there are no data is no material: at the faces of the grid, and where voxels are missing.
+//! Presence against the reference: no material outside the grid, nor where voxels are missing.
 
 use chiaroscuro::data::{Samples, Volume};
 use chiaroscuro::model::{
@@ -10,14 +10,14 @@ use glam::DVec3;
 use super::{check_volume, round_to_f16};
 use crate::scenes;
 
-/// Waves that reach all faces, from −1 to 1, as eight bits; or numbers of which those in a ball, and some here and there,
+/// Waves from −1 to 1 that reach all faces, as 8-bit values; or as floats of which those in a ball, and some others,
 /// are missing.
 pub(super) fn waves(n: usize, spacing_mm: DVec3, has_missing: bool) -> Volume {
     let value = |at: usize| {
         let p = DVec3::new((at % n) as f64, (at / n % n) as f64, (at / n / n) as f64) / n as f64;
         (9.0 * p.x + 3.0 * p.y).sin() * (7.0 * p.y - 2.0 * p.z).cos() * (5.0 * p.z + 4.0 * p.x * p.y).cos()
     };
-    // Eight bits, so that both engines store the same.
+    // Eight bits, so that both engines store the same values.
     let step = |at: usize| (127.5 + 127.5 * value(at)).round();
     if !has_missing {
         let values = (0..n * n * n).map(|at| step(at) as u8).collect();
@@ -31,14 +31,14 @@ pub(super) fn waves(n: usize, spacing_mm: DVec3, has_missing: bool) -> Volume {
     Volume::with_spacing("waves", [n; 3], spacing_mm, Samples::F32(values)).expect("a volume")
 }
 
-/// The first slice of them, between two of whose faces a kernel has no room.
+/// First slice of the waves, thinner than a kernel.
 pub(super) fn thin_waves() -> Volume {
     let Samples::U8(values) = waves(20, DVec3::ONE, false).samples().clone() else { panic!("eight bits") };
     let thin = Samples::U8(values[..20 * 20].to_vec());
     Volume::with_spacing("thin waves", [20, 20, 1], DVec3::ONE, thin).expect("a volume")
 }
 
-/// Both lobes of a signed field are shown, and nothing between them: the lowest value is opaque.
+/// Look that shows both lobes of a signed field, and nothing between them: the lowest value is opaque.
 pub(super) fn two_lobes() -> Settings {
     let point = |value, color, opacity| ControlPoint::new(value, color, opacity);
     let transfer = TransferFunction {

@@ -1,5 +1,5 @@
-//! The scattering engine: against the reference with the same weights, against the gathering engine,
-//! and against the footprint itself.
+//! The scattering engine: against the reference with the same weights, against the gathering engine, and against the
+//! footprint itself.
 
 use super::check_against;
 use crate::common::{Dataset, context, render};
@@ -21,7 +21,7 @@ fn scattered() -> Settings {
     settings
 }
 
-/// Densities are listed with 16 normalised bits: eight-bit data exactly.
+/// Compares with the reference. Densities are stored as 16-bit normalised values, which is exact for 8-bit data.
 fn check(name: &str, spacing_mm: DVec3, settings: &Settings) {
     check_against(name, 32, spacing_mm, settings, None);
 }
@@ -63,7 +63,7 @@ fn a_light_inside_and_first_touch() {
     check("scattered, first touch", DVec3::ONE, &settings);
 }
 
-/// Voxels are classified and then splatted.
+/// Voxels are classified before they are splatted.
 #[test]
 fn pre_classified() {
     let mut settings = scattered();
@@ -72,7 +72,7 @@ fn pre_classified() {
     check("scattered, pre-classified", DVec3::new(1.0, 1.2, 1.6), &settings);
 }
 
-/// The lowest density may show: then what no voxel was splatted to does, too.
+/// The lowest density may be visible: then pixels without splats are visible, too.
 #[test]
 fn nothing_that_shows() {
     let mut settings = scattered();
@@ -83,13 +83,13 @@ fn nothing_that_shows() {
     check("scattered, nothing shows, pre-classified", DVec3::ONE, &settings);
 }
 
-/// No. 16: The engines' pictures are the same sums in another order.
+/// No. 16: Both engines compute the same sums in another order.
 #[test]
 fn both_engines_make_the_same_picture() {
     let loaded = Dataset::new(scenes::creature(48, DVec3::ONE));
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let mut settings = scenes::look();
-    // The scattering engine keeps to the paper.
+    // The scattering engine implements the paper only.
     paper(&mut settings);
     settings.sampling.gradients = Gradients::Sheets;
     // Pixels no wider than voxels: the engines stretch kernels differently.
@@ -110,8 +110,8 @@ fn both_engines_make_the_same_picture() {
     assert_eq!(again.light, scattered.light, "integers do not mind the order");
 }
 
-/// The same with the settings that everybody has, but for what only one of the engines can do: another way back from
-/// sheets, whose blur rays nearby mostly hide.
+/// Both engines with default settings, except those that only one of them supports: their back-projections differ,
+/// and near-field rays mostly hide the blur of it.
 #[test]
 fn both_engines_make_nearly_the_same_picture_by_default() {
     let loaded = Dataset::new(builtin("cloud", Some(64)).expect("the cloud"));
@@ -127,8 +127,8 @@ fn both_engines_make_nearly_the_same_picture_by_default() {
         .unwrap_or_else(|err| panic!("{err}"));
 }
 
-/// One voxel under twenty shifts of the camera by parts of a pixel: the sheets together hold its
-/// footprint, the Gaussian integrated along each ray, as far as the table's radius of two voxels.
+/// One voxel under twenty sub-pixel shifts of the camera: the sheets together contain its footprint, the Gaussian
+/// integrated along each ray, up to the table's radius of two voxels.
 #[test]
 fn single_voxels_reproduce_the_footprint() {
     let n = 16;
@@ -143,7 +143,7 @@ fn single_voxels_reproduce_the_footprint() {
     let mut worst = 0.0f64;
     for phase in 0..20 {
         let size = [40, 40];
-        // 2.5 pixels per voxel, and the whole volume in the picture.
+        // At 2.5 pixels per voxel, with the whole volume in the picture.
         let camera = Camera {
             target: [f64::from(phase) * 0.0137, f64::from(phase) * 0.0071, f64::from(phase) * 0.0113],
             distance: 1.0,
@@ -180,8 +180,9 @@ fn single_voxels_reproduce_the_footprint() {
     assert!(worst <= FOOTPRINT, "{worst}");
 }
 
-/// What scatters has no texture of densities to sample: what it classifies is in the sheets. The eye's pass takes
-/// normals and rays nearby from the prefiltered pyramid; light and footprints only ask it which voxels are there.
+/// The scattering engine samples no density texture: the values that it classifies are in the sheets. The eye pass
+/// takes normals and near-field rays from the prefiltered pyramid; light and footprints read only the presence of
+/// voxels.
 #[test]
 fn scattering_samples_no_density() {
     let shaders =
@@ -201,14 +202,14 @@ fn scattering_samples_no_density() {
     }
 }
 
-/// Mean brightness of a ball while the camera turns, and with it the light, which stands to its right:
-/// nothing but the grid's orientation changes.
+/// Mean brightness of a ball while the camera turns together with the light, which is on its right: only the grid's
+/// orientation changes.
 fn turned(order: SheetOrder) -> Vec<f64> {
     let loaded = Dataset::new(scenes::ball(32, DVec3::splat(15.5), 11.0));
     let mut renderer = Renderer::new(&context().with_full_precision()).expect("a renderer");
     let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     let mut settings = Settings {
-        // A hard surface: sums of sheets that differ a little show different parts of it.
+        // A hard surface: small differences between sums of sheets show different parts of it.
         transfer: TransferFunction {
             points: vec![point(0.0, 0.0), point(110.0, 0.0), point(150.0, 0.8), point(255.0, 0.8)],
             interpolation: Interpolation::Opacity,
@@ -225,7 +226,7 @@ fn turned(order: SheetOrder) -> Vec<f64> {
     settings.shading.ambient = 0.0;
     settings.sampling.engine = Engine::Scatter;
     settings.sampling.order = order;
-    // Of the paper's time.
+    // As in the paper.
     settings.sampling.gradients = Gradients::Sheets;
     (35..=55)
         .map(|degree| {
@@ -236,7 +237,7 @@ fn turned(order: SheetOrder) -> Vec<f64> {
         .collect()
 }
 
-/// No. 7: Sheets along the volume pop when the camera passes 45 degrees; image-aligned ones do not.
+/// No. 7: Volume-aligned sheets pop when the camera passes 45 degrees; image-aligned ones do not.
 #[test]
 fn volume_aligned_sheets_pop_and_image_aligned_ones_do_not() {
     let largest_step = |order| {
@@ -250,8 +251,8 @@ fn volume_aligned_sheets_pop_and_image_aligned_ones_do_not() {
     assert!(largest_step(SheetOrder::VolumeAligned) > POPPING * ROTATION_STEP);
 }
 
-/// No. 3 for the historical orders: a block along the view is as opaque as its chord; single footprints
-/// add up to the same optical depth.
+/// No. 3 for the historical orders: a block along the view is as opaque as its chord; single footprints add up to the
+/// same optical depth.
 #[test]
 fn every_order_has_the_opacity_of_the_chord() {
     let n = 24;

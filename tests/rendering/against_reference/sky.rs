@@ -1,4 +1,4 @@
-//! Light from all around against the reference: what is open of the sky, and pictures under it.
+//! Sky light against the reference: moments of sky visibility, and pictures under a sky.
 
 use chiaroscuro::data::{Dataset, Volume};
 use chiaroscuro::gpu::Renderer;
@@ -19,7 +19,7 @@ use crate::thresholds::SAME_OPENNESS;
 
 const N: usize = 22;
 
-/// A sky with colours that leans to one side.
+/// Look under a coloured sky that is tilted to one side.
 fn under_a_sky(settings: Settings) -> Settings {
     let sky = Sky {
         mode: SkyMode::Gradient,
@@ -46,7 +46,7 @@ fn cut() -> Settings {
     settings
 }
 
-/// The moments of a reference as the GPU lays them out.
+/// Sky-visibility moments of a reference in the memory layout of the GPU.
 fn flat(openness: &Openness) -> Vec<f64> {
     let [x, y, z] = &openness.first;
     let of = |at: usize| [x[at], y[at], z[at], openness.mean[at]];
@@ -153,7 +153,7 @@ fn pictures_under_a_sky() {
     check_volume("missing voxels", waves(N, DVec3::ONE, true), &under_a_sky(two_lobes()), None);
 }
 
-/// Lights in one volume of colours have the sky beside it.
+/// Combined lights do not contain the sky, which is added beside them.
 #[test]
 fn combined_lights_keep_the_sky() {
     let mut settings = under_a_sky(scenes::look());

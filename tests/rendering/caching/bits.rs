@@ -1,4 +1,5 @@
-//! What must not change a single bit: skipping, repetition, previews before, and what lies around light volumes.
+//! Bit-exactness tests: empty-space skipping, repetition, earlier previews, and the margin of light volumes change no
+//! bit.
 
 use chiaroscuro::data::{Samples, Volume};
 use chiaroscuro::gpu::{RenderOptions, Renderer};
@@ -13,7 +14,7 @@ use crate::common::{Dataset, attenuation, context, render};
 use crate::scenes;
 use crate::thresholds::F16_STEP;
 
-/// Every look with chunks of one length, which for each look is another.
+/// Tests every look with one chunk length, a different one for each look.
 #[test]
 fn skipping_changes_no_bit_and_chunks_only_rounding() {
     check_skipping(|look, chunk| CHUNKS[look % CHUNKS.len()] == chunk);
@@ -25,10 +26,10 @@ fn chunks_of_every_length_change_only_rounding() {
     check_skipping(|_, _| true);
 }
 
-/// Slabs of a chunk: one, some, and more than there are.
+/// Number of slabs per chunk: one, some, and more than exist.
 const CHUNKS: [u32; 3] = [1, 5, 1000];
 
-/// Looks in which rays and light pass over what is empty in different ways.
+/// Looks in which rays and light skip empty space in different ways.
 fn looks() -> Vec<Settings> {
     let mut looks = vec![scenes::look(), three_lights()];
     looks[0].sampling.slab = 2.0;
@@ -70,15 +71,15 @@ fn looks() -> Vec<Settings> {
     looks
 }
 
-/// Looks in which rays pass what is empty by that come from all around: to places near what the eye sees, to what light
-/// bounces off, and to a floor.
+/// Looks in which rays from all directions skip empty space: towards places near visible material, towards scattering
+/// material, and towards a floor.
 fn lit_from_around() -> [Settings; 3] {
     let mut sky = scenes::look();
     (sky.sky.mode, sky.sky.directions, sky.floor.on) = (SkyMode::Gradient, 9, true);
     let mut bounces = sky.clone();
     (bounces.scattering.bounces, bounces.scattering.directions) = (3, 6);
     bounces.sky.resolution = Resolution::Quarter;
-    // Light meets less than the eye sees; and pixels are wide.
+    // The lighting curve shows less than the eye's; and pixels are wide.
     let mut apart = sky.clone();
     apart.lighting.linked = false;
     apart.lighting.curve = apart.transfer.clone();
@@ -88,8 +89,8 @@ fn lit_from_around() -> [Settings; 3] {
     [sky, bounces, apart]
 }
 
-/// Bricks are skipped: not a bit may change. Sheets are streamed in chunks: the ring's layers move, so fetches between
-/// them round differently, and nothing else. `is_meant` says which looks are drawn in which chunks.
+/// Checks that skipping bricks changes no bit. Sheets are streamed in chunks: the ring's layers move, so fetches
+/// between them are rounded differently, and nothing else changes. `is_meant` selects the looks and chunk lengths.
 fn check_skipping(is_meant: impl Fn(usize, u32) -> bool) {
     let loaded = Dataset::new(scenes::creature(48, DVec3::new(1.0, 1.0, 1.3)));
     for (at, settings) in looks().iter().enumerate() {
@@ -122,7 +123,7 @@ fn the_same_settings_give_the_same_bytes() {
     let picture = || render(&mut Renderer::new(&context()).expect("a renderer"), &loaded, &settings, SIZE);
     let first = picture();
     assert_eq!(first, picture());
-    // After unrelated work on the same renderer, too.
+    // Also after unrelated work on the same renderer.
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let mut other = settings.clone();
     other.lights[0].position = [0.0, 0.0, 1.0];
@@ -132,7 +133,7 @@ fn the_same_settings_give_the_same_bytes() {
     assert_eq!(first, render(&mut renderer, &loaded, &settings, SIZE));
 }
 
-/// A preview takes shortcuts; a light volume that it shares with pictures must not have taken them.
+/// Previews take shortcuts; a light volume that they share with pictures must not contain any.
 #[test]
 fn previews_leave_nothing_behind_that_pictures_would_not_make() {
     let middle = |[x, y, z]: [usize; 3]| [x, y, z].iter().all(|c| (20..28).contains(c));
@@ -157,8 +158,8 @@ fn previews_leave_nothing_behind_that_pictures_would_not_make() {
     assert_eq!(renderer.light_rebuilds(), [1, 1, 1], "the picture looks up what the preview filled");
 }
 
-/// Around what is filled a light volume is fully lit, once: not again while the light moves, but where
-/// another transfer function had it filled before.
+/// The margin around the filled part of a light volume is fully lit; it is cleared once, and again only where another
+/// transfer function had it filled before.
 #[test]
 fn what_is_lit_around_a_light_volume_stays_so_until_it_is_filled() {
     // A block in the faintest haze.
@@ -188,7 +189,7 @@ fn what_is_lit_around_a_light_volume_stays_so_until_it_is_filled() {
         renderer.read_light().expect("light")
     };
     let mut renderer = Renderer::new(&context()).expect("a renderer");
-    // The haze is not seen, seen, and not seen again: often enough that textures come around.
+    // The haze is hidden, visible, and hidden again: often enough that textures are reused.
     let onsets = [[1.5; 4], [0.5; 4], [1.5; 4]];
     for (at, onset) in onsets.into_iter().flatten().enumerate() {
         let place = [(at as f64).cos(), (at as f64).sin(), 1.5];

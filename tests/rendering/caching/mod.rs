@@ -1,4 +1,4 @@
-//! What is kept and what is refilled; and what must not change a single bit.
+//! Cache tests: products that are kept or refilled after a change, and bit-exact results.
 
 use chiaroscuro::gpu::Renderer;
 use chiaroscuro::model::{LightKind, NearField, Settings};
@@ -40,7 +40,7 @@ fn orbiting_a_hundred_frames_rebuilds_no_light() {
     orbit(100);
 }
 
-/// A whole turn in so many frames.
+/// Orbits once around in a number of frames, and checks that no light volume is refilled.
 fn orbit(frames: u32) {
     let (loaded, mut settings) = (loaded(), three_lights());
     let mut renderer = Renderer::new(&context()).expect("a renderer");
@@ -112,13 +112,13 @@ fn live_controls_rebuild_no_light_and_change_the_picture() {
         assert_eq!(renderer.light_rebuilds(), [1, 1, 1], "{name}");
         assert_ne!(after.light, before.light, "{name} changes nothing");
     }
-    // Back again: the same bytes, and still nothing rebuilt.
+    // Back to the first settings: the same bytes, and still nothing is refilled.
     assert_eq!(render(&mut renderer, &loaded, &settings, SIZE), before);
     assert_eq!(renderer.light_rebuilds(), [1, 1, 1]);
 }
 
-/// With a bias light is looked up further from material: what lies there is filled when a bias is first
-/// used, for the largest that there is. Filling it always would make every light build a seventh longer.
+/// With a bias, light is looked up further from material: that region is filled when a bias is first used, for the
+/// largest bias. Filling it always would make every light build a seventh longer.
 #[test]
 fn a_light_bias_fills_more_once_and_is_live_from_then_on() {
     let (loaded, mut settings) = (loaded(), three_lights());
@@ -147,7 +147,7 @@ fn moving_one_of_three_lights_rebuilds_exactly_that_one() {
     settings.lights[1].position = [-1.5, 1.7, 2.0];
     render(&mut renderer, &loaded, &settings, SIZE);
     assert_eq!(renderer.light_rebuilds(), [1, 2, 1]);
-    // Further out along the same direction a parallel light is the same light.
+    // Further out along the same direction a parallel light is unchanged.
     settings.lights[0].position = [2.6, -1.6, 3.4];
     render(&mut renderer, &loaded, &settings, SIZE);
     assert_eq!(renderer.light_rebuilds(), [1, 2, 1]);
@@ -163,8 +163,8 @@ fn a_lighting_transfer_edit_rebuilds_all() {
     assert_eq!(renderer.light_rebuilds(), [2, 2, 2]);
 }
 
-/// An attenuation volume in use equals a fresh one; spoiling it shows that changes that may keep it
-/// do keep it, and that moving the light refills it.
+/// A reused attenuation volume equals a fresh one; spoiling it shows that changes that may keep it do keep it, and
+/// that moving the light refills it.
 #[test]
 fn kept_light_volumes_are_really_kept_and_refilled_ones_really_refilled() {
     let (loaded, mut settings) = (loaded(), scenes::look());

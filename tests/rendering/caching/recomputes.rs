@@ -1,4 +1,4 @@
-//! What really runs after a change, counted by the renderer itself: every setting costs what it should.
+//! Cost of changes, counted by the renderer: every setting recomputes only the products that depend on it.
 
 use chiaroscuro::data::Dataset;
 use chiaroscuro::gpu::{Context, RenderOptions, Renderer, Runs, ShaderLibrary};
@@ -12,22 +12,22 @@ use crate::scenes;
 
 const SIZE: [u32; 2] = [24, 18];
 
-/// What a change is expected to cost.
+/// Expected cost of a change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Cost {
     Nothing,
     Display,
-    /// The floor, and what is shown.
+    /// The floor, and the display pass.
     Floor,
     /// The picture, but no light volume.
     Eye,
-    /// What is open of the sky, and the picture.
+    /// Sky visibility, and the picture.
     Sky,
-    /// Light that bounces, and the picture.
+    /// Scattered light, and the picture.
     Bounces,
-    /// So many light volumes, and the picture.
+    /// A number of light volumes, and the picture.
     Lights(u32),
-    /// Everything, from the upload on.
+    /// Everything, from the upload of the volume on.
     Volume,
 }
 
@@ -46,7 +46,7 @@ fn cost(runs: Runs) -> Cost {
     }
 }
 
-/// Three lights that cast shadows, one of them near.
+/// Look with three lights that cast shadows, one of them near.
 fn home() -> Settings {
     let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     Settings {
@@ -56,13 +56,13 @@ fn home() -> Settings {
             Light { kind: LightKind::Perspective, ..Light::default() },
         ],
         transfer: TransferFunction { points: vec![point(0.1, 0.0), point(1.0, 0.5)], ..Default::default() },
-        // As coarse as it is asked for, however small the volume.
+        // At the requested resolution, however small the volume.
         shadows: Shadows { least_blocks: 1, ..Shadows::default() },
         ..Settings::default()
     }
 }
 
-/// Renders one look after another, and says what the second took.
+/// Renderer of two looks in sequence, which counts the passes of the second.
 struct Bench {
     context: Context,
     shaders: ShaderLibrary,
@@ -76,7 +76,7 @@ impl Bench {
         Self { context, shaders, dataset: Dataset::new(scenes::creature(12, DVec3::ONE)) }
     }
 
-    /// What the second look takes after the first, with options of its own.
+    /// Passes that the second look runs after the first, with given options.
     fn runs(&self, first: &Settings, second: &Settings, options: &RenderOptions) -> Runs {
         let mut renderer = Renderer::with_shaders(&self.context, self.shaders.clone()).expect("a renderer");
         let usual = RenderOptions::default();
@@ -91,7 +91,7 @@ impl Bench {
     }
 }
 
-/// Rows for what a user changes most; that every setting is classified is checked in `src/plan/keys/tests.rs`.
+/// Rows for the settings that users change most; `src/plan/keys/tests/` checks that every setting is classified.
 #[test]
 fn every_setting_costs_what_it_should() {
     let table = [
@@ -125,11 +125,11 @@ fn every_setting_costs_what_it_should() {
         ("shadows.algorithm", "raycast", Cost::Lights(3)),
         ("shadows.strength", "0.5", Cost::Eye),
         ("shadows.gain", "2", Cost::Eye),
-        // Rays nearby take its place (without them: `a_light_bias_fills_more_once_and_is_live_from_then_on`).
+        // Near-field rays replace it (without them: `a_light_bias_fills_more_once_and_is_live_from_then_on`).
         ("shadows.bias_voxels", "1", Cost::Nothing),
-        // Light volumes are filled where they are looked up: as far ahead of samples as rays nearby go.
+        // Light volumes are filled where they are looked up: at the end of near-field rays.
         ("shadows.near_field", "off", Cost::Lights(3)),
-        // So small a volume is filled to its border, beyond which longer rays find nothing else.
+        // Such a small volume is filled to its border, beyond which longer rays find nothing else.
         ("shadows.near_field", "long", Cost::Eye),
         ("shadows.reverse_kernel", "forward", Cost::Lights(3)),
         ("shading.sides", "two", Cost::Eye),
@@ -139,7 +139,7 @@ fn every_setting_costs_what_it_should() {
         ("shadows.first_touch", "true", Cost::Lights(3)),
         ("shadows.kernel", "prefiltered", Cost::Lights(3)),
         ("shadows.resolution", "half", Cost::Lights(3)),
-        // Of combined light nothing lies ahead.
+        // Combined light is not looked up ahead of samples.
         ("shadows.storage", "combined", Cost::Lights(3)),
         ("cuts.crop", r#"{"on": true}"#, Cost::Nothing),
         ("cuts.crop", r#"{"on": true, "low": [0.1, 0, 0]}"#, Cost::Lights(3)),
@@ -160,8 +160,8 @@ fn every_setting_costs_what_it_should() {
     }
 }
 
-/// What is open of the sky is found anew where something else is in its way, and never because of what the sky, the
-/// camera or other lights look like.
+/// Sky visibility is recomputed when its occluders change, and never because of the colours of the sky, the camera or
+/// other lights.
 #[test]
 fn a_sky_costs_a_picture_unless_something_else_is_in_its_way() {
     let bench = Bench::new();
@@ -192,15 +192,15 @@ fn a_sky_costs_a_picture_unless_something_else_is_in_its_way() {
     }
 }
 
-/// Light from all around is found where it is looked up: an eye that sees more fills more, and once it has, one volume serves
-/// whatever it sees of that. Previews, whose pixels are wide, make do with what there is.
+/// Light from all directions is computed where it is looked up: an eye that sees more fills more, and one volume then
+/// serves all parts of that. Previews, whose pixels are wide, use the existing volume.
 #[test]
 fn an_eye_that_sees_more_fills_more_once() {
     let bench = Bench::new();
     let mut few = home();
     (few.sky.mode, few.sky.directions) = (SkyMode::White, 6);
     (few.scattering.bounces, few.scattering.directions) = (1, 6);
-    // Light meets the bright core alone.
+    // The lighting curve shows the bright core alone.
     few.lighting.linked = false;
     let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     few.lighting.curve.points = vec![point(210.0, 0.0), point(250.0, 0.5)];
@@ -224,7 +224,7 @@ fn an_eye_that_sees_more_fills_more_once() {
     assert_eq!(filled(&more, false), (0, 0));
 }
 
-/// Light bounces anew where lights, colours or what is in its way are others, and never because of the view.
+/// Scattered light is recomputed when lights, colours or occluders change, and never because of the view.
 #[test]
 fn light_that_bounces_is_kept_while_the_camera_turns() {
     let bench = Bench::new();
@@ -292,7 +292,7 @@ fn tables_are_baked_when_their_curves_change() {
     assert_eq!(baked("transfer.points.1.opacity", "0.4"), 2);
 }
 
-/// What is served without being drawn again is what would have been drawn.
+/// Cached pictures are the bytes that would be drawn.
 #[test]
 fn pictures_that_are_shown_again_are_the_same_bytes() {
     let bench = Bench::new();
@@ -315,7 +315,7 @@ fn pictures_that_are_shown_again_are_the_same_bytes() {
     assert_eq!(anew, shown);
 }
 
-/// A picture is the same whatever was drawn before it on the same renderer, as contact sheets do it.
+/// A picture does not depend on the pictures drawn before it on the same renderer, as in contact sheets.
 #[test]
 fn a_picture_does_not_depend_on_the_one_before() {
     use chiaroscuro::data::Histogram;

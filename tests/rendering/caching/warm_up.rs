@@ -1,4 +1,4 @@
-//! Pipelines that are made ahead of time are those that the first picture needs.
+//! Test of the pipeline warm-up: the pipelines compiled ahead of time are those of the first picture.
 
 use std::sync::atomic::AtomicBool;
 
@@ -9,7 +9,7 @@ use chiaroscuro::model::{Settings, auto};
 
 use crate::common::context;
 
-/// How many pipelines a picture makes after the warm-up.
+/// Number of pipelines that a picture compiles after the warm-up.
 fn made_after_warm_up(change: impl Fn(&mut Settings)) -> usize {
     let context = context();
     let shaders = ShaderLibrary::new(&context);
@@ -17,8 +17,8 @@ fn made_after_warm_up(change: impl Fn(&mut Settings)) -> usize {
     let before = shaders.pipeline_count();
     assert!(before > 10, "the warm-up makes pipelines: {before}");
     let mut renderer = Renderer::with_shaders(&context, shaders.clone()).expect("a renderer");
-    // With more than a kernel's width of nothing around it, as most objects have: what ends at the faces of its grid takes
-    // pipelines of its own.
+    // With an empty border wider than a kernel, as most objects have: material at the faces of the grid needs other
+    // pipelines.
     let dataset = Dataset::new(builtin("chair", Some(128)).expect("the chair"));
     let mut settings = auto::first_settings(dataset.volume(), dataset.histogram());
     change(&mut settings);

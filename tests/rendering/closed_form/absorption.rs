@@ -1,4 +1,4 @@
-//! What homogeneous material absorbs: Beer–Lambert, and the opacity of chords.
+//! Absorption by homogeneous material in closed form: Beer–Lambert, and the opacity of chords.
 
 use chiaroscuro::gpu::Picture;
 use chiaroscuro::model::{
@@ -23,7 +23,7 @@ with_both_engines! {
 /// Variance of the cubic B-spline, in voxels².
 const KERNEL_VARIANCE: f64 = 1.0 / 3.0;
 
-/// Mean of the picture's alpha over its middle.
+/// Mean of the picture's alpha over its central 4 × 4 pixels.
 fn middle_alpha(picture: &Picture) -> f64 {
     let [w, h] = picture.size.map(|n| n as usize);
     let texels: Vec<f64> = (h / 2 - 2..h / 2 + 2)
@@ -33,8 +33,8 @@ fn middle_alpha(picture: &Picture) -> f64 {
     texels.iter().sum::<f64>() / texels.len() as f64
 }
 
-/// No. 2: Light falls off exponentially in homogeneous material, times what the kernel does to an
-/// exponential: e^(μ²σ²/2) from the reverse splat, sinh(μΔs/2)/(μΔs/2) from the slab.
+/// No. 2: Light falls off exponentially in homogeneous material, times the kernel's effect on an exponential:
+/// e^(μ²σ²/2) from the reverse splat, sinh(μΔs/2)/(μΔs/2) from the slab.
 fn beer_lambert_in_a_homogeneous_block(engine: Engine) {
     let n = 48;
     let face = 8;
@@ -66,8 +66,8 @@ fn beer_lambert_in_a_homogeneous_block(engine: Engine) {
     }
 }
 
-/// No. 2, splatted back with a tent: what it makes of an exponential is a sum over the slabs under it, whose places
-/// the sheets' frame tells.
+/// No. 2, splatted back with a tent: its effect on an exponential is a sum over the slabs under it, whose positions
+/// are given by the sheets' frame.
 #[test]
 fn beer_lambert_with_a_tent_on_the_way_back() {
     let n = 48;
@@ -108,8 +108,8 @@ fn beer_lambert_with_a_tent_on_the_way_back() {
     }
 }
 
-/// No. 2, for rays from the voxels: nothing is blurred on the way back, so light falls as e^(−μ·depth)
-/// and no faster. Sampled twice per voxel, where the midpoint rule meets the faces exactly.
+/// No. 2, for rays from the voxels: back-projection blurs nothing, so light falls exactly as e^(−μ·depth). Sampled
+/// twice per voxel, where the midpoint rule meets the faces exactly.
 #[test]
 fn beer_lambert_by_rays() {
     let n = 48;
@@ -133,7 +133,7 @@ fn beer_lambert_by_rays() {
     }
 }
 
-/// Rays end where the light is: amid homogeneous material a near light falls as e^(−μ·distance), however the distance
+/// Rays end at the light: amid homogeneous material a near light falls as e^(−μ·distance), however the distance
 /// divides into steps.
 #[test]
 fn beer_lambert_by_rays_to_a_light_inside() {
@@ -151,7 +151,7 @@ fn beer_lambert_by_rays_to_a_light_inside() {
         settings.shadows.deposit = deposit;
         settings.lights = vec![scenes::light(LightKind::Perspective, place.into())];
         let volume = attenuation(&mut renderer, &loaded, &settings, 0);
-        // As the paper has it, the half step before the first sample is not counted.
+        // In the paper's deposit, the half step before the first sample is not counted.
         let missing = if deposit == Deposit::Front { 0.5 } else { 0.0 };
         for at in (0..n * n * n).step_by(7) {
             let voxel = DVec3::new((at % n) as f64, (at / n % n) as f64, (at / n / n) as f64);
@@ -170,7 +170,7 @@ fn beer_lambert_by_rays_to_a_light_inside() {
     }
 }
 
-/// No. 3: What a ray sees of homogeneous material is 1 − e^(−μ·chord), whatever the slab.
+/// No. 3: The opacity of homogeneous material along a ray is 1 − e^(−μ·chord), whatever the slab.
 fn opacity_of_a_chord(engine: Engine) {
     let n = 48;
     let block = Dataset::new(scenes::block(n, |[x, y, z]| [x, y, z].iter().all(|c| (12..36).contains(c))));
@@ -190,7 +190,7 @@ fn opacity_of_a_chord(engine: Engine) {
             } else {
                 middle_alpha(&picture)
             };
-            // Half a pixel off the middle shortens the ball's chord by less than 0.1 %.
+            // Half a pixel off the centre shortens the ball's chord by less than 0.1 %.
             assert!((found - expected).abs() <= CHORD_OPACITY, "{name}, Δs {slab}: {found} not {expected}");
             means.push(picture.light.iter().map(|texel| f64::from(texel[3])).sum::<f64>());
         }
@@ -198,7 +198,7 @@ fn opacity_of_a_chord(engine: Engine) {
     }
 }
 
-/// The same with slabs by need, through material of which much, or little, is met within a voxel.
+/// Opacity of a chord with slabs by need, for material that absorbs much, or little, within a voxel.
 #[test]
 fn opacity_of_a_chord_by_need() {
     let ball = Dataset::new(scenes::ball(48, DVec3::splat(23.5), 14.0));

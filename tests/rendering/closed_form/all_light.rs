@@ -1,5 +1,5 @@
-//! Pictures with everything on, lights that have a size, a sky and light that bounces, beside those of a path tracer that
-//! knows no light volumes, no sheets, no blocks, no fixed directions and no bounces to be counted.
+//! All light against a path tracer: area lights, a sky and multiple scattering, compared with pictures that are
+//! traced without light volumes, sheets, blocks, fixed directions or counted bounces.
 
 use chiaroscuro::data::load::{Choice, LoadControl, LoadOptions, Portion, Thinning};
 use chiaroscuro::data::{Samples, Volume, open};
@@ -17,26 +17,27 @@ use crate::scenes::{self, isotropic};
 use crate::thresholds::{ALL_LIGHT, ALL_LIGHT_DEFAULTS};
 use crate::tracing::{Lots, Material};
 
-/// Pictures are so many pixels wide and high, each the light of one ray: pixels are narrower than voxels, so that no kernel is
+/// Width and height of pictures in pixels, each one ray: pixels are narrower than voxels, so that no kernel is
 /// stretched.
 const SIZE: u32 = 64;
 
-/// Pixels along the edges of squares whose means are compared: chance counts for a quarter in them.
+/// Edge in pixels of the squares whose means are compared: their noise is a quarter of a pixel's.
 const SQUARE: u32 = 4;
 
-/// Pixels of a picture's pixel in maps of errors.
+/// Edge of an enlarged pixel in maps of errors, in pixels.
 const ENLARGED: u32 = 4;
 
-/// Voxels along the edges of volumes.
+/// Number of voxels along the edges of volumes.
 const N: usize = 24;
 
-/// Values of a scan of a tooth up to which there is air.
+/// Largest value of air in the scan of a tooth.
 const AIR: f64 = 90.0;
 
-/// Light that is weaker than this share is followed no further.
+/// Path weight below which a path is terminated.
 const FAINT: f64 = 1e-3;
 
-/// A disc far away, a lamp, and a sky of three colours over matter that scatters and glows, of all densities.
+/// Look with a distant disc, a ball light, and a sky of three colours over material of all densities that scatters
+/// and glows.
 fn look() -> Settings {
     let mut settings = scenes::look();
     isotropic(&mut settings);
@@ -52,26 +53,26 @@ fn look() -> Settings {
     settings.sky = Sky { mode: SkyMode::Gradient, intensity: 0.6, ..Sky::default() };
     settings.scattering = Scattering { bounces: 8, albedo: 0.9, ..Scattering::default() };
     for point in &mut settings.transfer.points {
-        // Half of the light ends within two voxels at most.
+        // Half of the light is absorbed within two voxels at most.
         point.opacity *= 0.35;
     }
     settings
 }
 
-/// What the path tracer knows of a scene.
+/// Path tracer of a scene.
 struct Tracer<'a> {
     material: Material,
     settings: &'a Settings,
     index_from_scene: glam::DAffine3,
-    /// Points of each light, and its linear colour.
+    /// Sample points of each light, and its linear colour.
     lights: Vec<(Vec<SceneLight>, [f64; 3])>,
     sky: SkyRadiance,
-    /// Beyond all matter.
+    /// Distance beyond all material, in scene units.
     far: f64,
 }
 
 impl Tracer<'_> {
-    /// What of the lights arrives at an index-space point.
+    /// Direct light at an index-space point, from a random point of each light.
     fn direct(&self, lots: &mut Lots, point: DVec3) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for (points, color) in &self.lights {
@@ -91,7 +92,7 @@ impl Tracer<'_> {
         sum
     }
 
-    /// The light that one path brings back to the eye along a ray.
+    /// Radiance of one path that reaches the eye along a ray.
     fn path(&self, lots: &mut Lots, origin: DVec3, along: DVec3, length: f64) -> [f64; 3] {
         let Some(mut point) = self.material.first_meeting(lots, origin, along, length) else {
             return [0.0; 3];
@@ -101,7 +102,8 @@ impl Tracer<'_> {
         let mut sum = [0.0; 3];
         let direct = self.direct(lots, point);
         (0..3).for_each(|c| sum[c] += weight[c] * (direct[c] + shading.emission));
-        // The eye sees all of what it meets of lights and sky; what has been scattered before is a share of that.
+        // The eye sees all direct light of lights and sky at its first interaction; scattered light is a share of
+        // that.
         let mut is_seen = true;
         loop {
             let towards = lots.direction();
@@ -119,8 +121,9 @@ impl Tracer<'_> {
             let direct = self.direct(lots, next);
             for c in 0..3 {
                 weight[c] *= color[c] * albedo;
-                // A light of 1 gives a surface that faces it as much as a sky of 1 does, and a quarter of that to what has
-                // no side; the eye shows all of it, as if that faced each light. What glows is not scattered before it is.
+                // A light of 1 gives a surface that faces it as much as a sky of 1 does, and a quarter of that to
+                // material without a side; the eye shows all of it, as if the material faced each light. Emission is
+                // not scattered before.
                 sum[c] += weight[c] * (direct[c] / 4.0 + shading.emission / scattering.albedo);
             }
             if weight.iter().all(|&weight| weight < FAINT) {
@@ -131,7 +134,7 @@ impl Tracer<'_> {
     }
 }
 
-/// Two estimates of each pixel, right in the mean, of half of the paths each.
+/// Two unbiased estimates of each pixel, each with half of the paths.
 fn traced(loaded: &Dataset, settings: &Settings, paths: u32) -> Vec<[[f64; 3]; 2]> {
     let scene = loaded.volume().scene();
     let linear = |light: &Light| {
@@ -166,7 +169,7 @@ fn traced(loaded: &Dataset, settings: &Settings, paths: u32) -> Vec<[[f64; 3]; 2
         .collect()
 }
 
-/// The means of the squares of a picture.
+/// Means of the squares of a picture.
 fn squares(light: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let edge = SIZE / SQUARE;
     let mean = |square: u32| {
@@ -182,14 +185,14 @@ fn squares(light: &[[f64; 3]]) -> Vec<[f64; 3]> {
     (0..edge * edge).map(mean).collect()
 }
 
-/// A picture's light.
+/// Linear light of a rendered picture.
 fn rendered(renderer: &mut Renderer, loaded: &Dataset, settings: &Settings) -> Vec<[f64; 3]> {
     let picture = renderer.render(loaded, settings, [SIZE; 2], &RenderOptions::default()).expect("a picture");
     picture.light.iter().map(|&[r, g, b, _]| [r, g, b].map(f64::from)).collect()
 }
 
-/// Beside each other at the finest, at the defaults, as the path tracer has it, and by how much the first two are off it,
-/// four times as strong and around grey: a row of small pictures.
+/// Row of small pictures for inspection: the finest, the default and the traced one, and the errors of the first two,
+/// four times amplified and around grey.
 fn row(fine: &[[f64; 3]], usual: &[[f64; 3]], truth: &[[f64; 3]]) -> image::RgbImage {
     let differ = |found: &[[f64; 3]]| -> Vec<[f64; 3]> {
         let apart = |(a, b): (&[f64; 3], &[f64; 3])| std::array::from_fn(|c| 0.2 + 4.0 * (a[c] - b[c]));
@@ -203,8 +206,8 @@ fn row(fine: &[[f64; 3]], usual: &[[f64; 3]], truth: &[[f64; 3]]) -> image::RgbI
     })
 }
 
-/// The root mean square of how a picture differs from the truth, over its mean: estimates by lot differ from it by chance,
-/// which two of them do independently, so that the product of both differences has none of it in the mean.
+/// Root mean square difference of a picture from the truth, over its mean. The two estimates have independent noise,
+/// so that the product of both differences is free of it in the mean.
 fn off(renderer: &mut Renderer, loaded: &Dataset, settings: &Settings, [a, b]: &[Vec<[f64; 3]>; 2]) -> f64 {
     let (mut products, mut mean) = (0.0, 0.0);
     let found = squares(&rendered(renderer, loaded, settings));
@@ -218,12 +221,12 @@ fn off(renderer: &mut Renderer, loaded: &Dataset, settings: &Settings, [a, b]: &
     (products / count).max(0.0).sqrt() / (mean / count)
 }
 
-/// Everything as finely as it goes.
+/// Settings with everything at the finest.
 fn finest(settings: &Settings) -> Settings {
     let mut settings = settings.clone();
-    // Rays from every sample to every point of a light are more turns of loops than software drivers take.
+    // Rays from every sample to every point of a light exceed the loop limits of software drivers.
     Quality::Fine.apply(&mut settings);
-    // Within slabs of a voxel the colour of thin matter changes.
+    // Within slabs of a voxel the colour of thin material changes.
     (settings.sampling.slabs, settings.sampling.slab) = (Slabs::Even, 0.25);
     settings.sky.resolution = Resolution::Full;
     settings.scattering.resolution = Resolution::Full;
@@ -232,7 +235,7 @@ fn finest(settings: &Settings) -> Settings {
     settings
 }
 
-/// Blobs of all densities that thin out before the faces of the grid, at which renderers end what they show.
+/// Blobs of all densities that thin out before the faces of the grid, where renderers clip them.
 fn clouds(seed: u64) -> Volume {
     let noise = scenes::noise(N, seed);
     let values = (0..N * N * N).map(|at| {
@@ -249,7 +252,7 @@ fn check(name: &str, loaded: &Dataset, paths: u32) {
     assert!(usual <= ALL_LIGHT_DEFAULTS, "{name}: {usual}");
 }
 
-/// Checks the picture that is as fine as it goes; how far off the usual one is.
+/// Checks the picture at the finest settings; returns the error of the default settings.
 fn check_finest(name: &str, loaded: &Dataset, paths: u32, settings: &Settings) -> f64 {
     let truth = traced(loaded, settings, paths);
     let mean: Vec<_> = truth.iter().map(|[a, b]| std::array::from_fn(|c| 0.5 * (a[c] + b[c]))).collect();
@@ -293,7 +296,7 @@ fn all_light_is_that_of_a_path_tracer_in_other_volumes() {
     check("clouds 8", &Dataset::new(clouds(8)), 3072);
 }
 
-/// A scan of a tooth with a quarter of its voxels along each axis, if there is one.
+/// Scan of a tooth with a quarter of its voxels along each axis, if available.
 #[test]
 #[ignore = "takes minutes"]
 fn all_light_is_that_of_a_path_tracer_in_a_scan() {
@@ -307,8 +310,8 @@ fn all_light_is_that_of_a_path_tracer_in_a_scan() {
     let choice = Choice { portion: Some(quarter), ..Choice::default() };
     let options = LoadOptions { choice, ..LoadOptions::default() };
     let volume = open(&path, &options, &LoadControl::new()).expect("a volume");
-    // Nothing of the air around it, which ends with the grid: there renderers end by the share of the kernel, and the path
-    // tracer by densities.
+    // Without the surrounding air, which ends with the grid: there renderers clip by the share of the kernel, and the
+    // path tracer by densities.
     let mut settings = look();
     for point in &mut settings.transfer.points {
         point.value = AIR + point.value.max(0.0) * (255.0 - AIR) / 255.0;

@@ -1,4 +1,4 @@
-//! Light that bounces in scenes where the light is known in closed form: on the reference, and on the GPU.
+//! Multiple scattering in scenes with a known solution, on the reference and on the GPU.
 
 use chiaroscuro::data::{Dataset, Samples, Volume};
 use chiaroscuro::gpu::Renderer;
@@ -10,7 +10,7 @@ use crate::common::{context, render};
 use crate::scenes::{self, linear_extinction};
 use crate::thresholds::{FURNACE, HALF_SPACE};
 
-/// Voxels that are full where `full` says so.
+/// Volume with densities given by `full`.
 fn volume(dims: [usize; 3], full: impl Fn([usize; 3]) -> f64) -> Volume {
     let [nx, ny, nz] = dims;
     let place = |at: usize| [at % nx, at / nx % ny, at / (nx * ny)];
@@ -30,7 +30,7 @@ fn look(per_voxel: f64, (bounces, albedo, directions): (u32, f64, u32)) -> Setti
     }
 }
 
-/// Light that has bounced, of the red channel, by the reference and the GPU.
+/// Scattered light in the red channel, by the reference and the GPU.
 fn found(volume: &Volume, settings: &Settings) -> [Vec<f64>; 2] {
     let reference = Reference::new(volume, settings, Options::default()).bounced();
     let mut renderer = Renderer::new(&context()).expect("a renderer");
@@ -39,8 +39,8 @@ fn found(volume: &Volume, settings: &Settings) -> [Vec<f64>; 2] {
     [red, light.iter().map(|texel| f64::from(texel[0])).collect()]
 }
 
-/// In a white furnace, a sky that is 1 everywhere, matter that absorbs nothing cannot be seen: what is in the way of the sky
-/// gives back as much. What has bounced is what is not open of the sky, whatever the densities.
+/// White furnace: under a sky of 1 everywhere, material that absorbs nothing is invisible, since it returns all light
+/// that it occludes. Scattered light is the complement of sky visibility, whatever the densities.
 #[test]
 fn what_absorbs_nothing_vanishes_in_a_white_furnace() {
     let dims = [20, 17, 23];
@@ -63,8 +63,8 @@ fn what_absorbs_nothing_vanishes_in_a_white_furnace() {
     }
 }
 
-/// Chandrasekhar's H of matter that scatters evenly (Radiative Transfer 1950, §39), at μ = 1, by its integral equation:
-/// 1/H(μ) = √(1 − ϖ) + ϖ/2 ∫ μ′ H(μ′) / (μ + μ′) dμ′.
+/// Chandrasekhar's H function of isotropic scattering (Radiative Transfer 1950, §39), at μ = 1, by its integral
+/// equation: 1/H(μ) = √(1 − ϖ) + ϖ/2 ∫ μ′ H(μ′) / (μ + μ′) dμ′.
 fn chandrasekhar(albedo: f64) -> f64 {
     let n = 400;
     let cosine = |i: usize| (i as f64 + 0.5) / n as f64;
@@ -79,7 +79,7 @@ fn chandrasekhar(albedo: f64) -> f64 {
     1.0 / inverse(&h, 1.0)
 }
 
-/// Of light that falls straight on a half space which scatters evenly, 1 − √(1 − ϖ) H(1) comes back; the rest is absorbed.
+/// A half space with isotropic scattering reflects 1 − √(1 − ϖ) H(1) of perpendicular light; the rest is absorbed.
 #[test]
 fn a_half_space_gives_back_what_chandrasekhar_says() {
     const PER_VOXEL: f64 = 0.6;
@@ -94,7 +94,7 @@ fn a_half_space_gives_back_what_chandrasekhar_says() {
         let edge = slab.scene().smallest_edge();
         let right = 1.0 - (1.0 - albedo).sqrt() * chandrasekhar(albedo);
         for bounced in found(&slab, &settings) {
-            // Down the middle column, what unscattered light is left, E/π = 1, and what is absorbed of all light.
+            // Down the middle column: the remaining unscattered light, E/π = 1, and the absorbed share of all light.
             let (mut left, mut absorbed) = (1.0, 0.0);
             for z in 0..dims[2] {
                 let at = (z * dims[1] + dims[1] / 2) * dims[0] + dims[0] / 2;
@@ -110,7 +110,7 @@ fn a_half_space_gives_back_what_chandrasekhar_says() {
     }
 }
 
-/// Twice the light is twice as much that has bounced, and what two lights bring is the sum.
+/// Twice the light is twice the scattered light, and two lights give the sum.
 #[test]
 fn bounced_light_is_linear_in_the_lights() {
     let volume = scenes::noise(14, 5);
@@ -131,7 +131,7 @@ fn bounced_light_is_linear_in_the_lights() {
     }
 }
 
-/// Without albedo, without bounces or without brightness nothing bounces: the same bytes.
+/// Without albedo, bounces or strength nothing is scattered: the same bytes.
 #[test]
 fn nothing_bounces_where_it_is_off() {
     let dataset = Dataset::new(scenes::noise(20, 7));

@@ -1,4 +1,4 @@
-//! Brightness that stays: while camera or light turn, and when shadows are balanced.
+//! Constant brightness: while camera or light turn, and with balanced shadows.
 
 use chiaroscuro::gpu::mean_luminance;
 use chiaroscuro::model::{Engine, LightKind};
@@ -32,7 +32,7 @@ fn turning_does_not_change_brightness(engine: Engine) {
         let angle = f64::from(degree).to_radians();
         settings.lights = vec![scenes::light(LightKind::Parallel, [angle.cos(), angle.sin(), 0.6])];
         let volume = attenuation(&mut renderer, &loaded, &settings, 0);
-        // Within the ball: the mean over the grid would see how far the shadow runs inside it.
+        // Within the ball: the mean over the grid would include the length of the shadow.
         let inside: Vec<f64> = (0..volume.len())
             .filter(|at| {
                 let p = DVec3::new((at % 32) as f64, (at / 32 % 32) as f64, (at / 1024) as f64);
@@ -60,7 +60,7 @@ fn steady(what: &str, means: &[f64]) {
     assert!(range <= ROTATION_RANGE && step <= ROTATION_STEP, "{what}: range {range}, step {step}");
 }
 
-/// The measure of balance and of the darkness of shadows.
+/// Measurement of the balance and of the darkness of shadows.
 #[test]
 fn balanced_pictures_are_as_bright_as_unshadowed_ones() {
     let loaded = Dataset::new(scenes::creature(48, DVec3::ONE));

@@ -1,4 +1,4 @@
-//! Coloured shadows: Beer and Lambert's law for each colour of light.
+//! Coloured shadows in closed form: the Beer–Lambert law for each colour of light.
 
 use chiaroscuro::gpu::RenderOptions;
 use chiaroscuro::model::{Engine, ShadowAlgorithm};
@@ -16,13 +16,13 @@ with_both_engines! {
 /// Shares of the extinction that red, green and blue light meet: extinctions as 0.1 to 1 to 3.
 const MET: [f64; 3] = [1.0 / 30.0, 1.0 / 3.0, 1.0];
 
-/// The sRGB colour that has these shares: 1 − t·(c − min) / max, with nothing of blue and t of 29/30.
+/// The sRGB colour that has these shares: 1 − t·(c − min) / max, with a blue of 0 and t of 29/30.
 fn glass() -> [f32; 3] {
     [1.0, (2.0 / 3.0) / (29.0 / 30.0), 0.0].map(|linear| chiaroscuro::model::srgb_from_linear(linear) as f32)
 }
 
-/// Behind d voxels of a block of extinction μ is e^(−μ·s·d) of the light of a colour that meets a share s of it: what a
-/// light volume says of a place divided by what it says of another does not depend on kernels.
+/// Behind d voxels of a block of extinction μ, e^(−μ·s·d) remains of light of a colour that meets a share s of it:
+/// the ratio of a light volume at two positions does not depend on kernels.
 fn each_colour_is_absorbed_by_itself(engine: Engine) {
     let (n, face, per_voxel) = (48, 8, 0.25);
     let loaded =

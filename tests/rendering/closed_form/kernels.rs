@@ -1,4 +1,4 @@
-//! Kernels: a constant stays constant, slabs converge, and extremes stay numbers.
+//! Kernels in closed form: partition of unity, convergence of slabs, and finite results for extreme volumes.
 
 use chiaroscuro::model::{Deposit, Engine, Quadrature};
 use glam::DVec3;
@@ -15,8 +15,8 @@ with_both_engines! {
     extremes_stay_finite
 }
 
-/// No. 1: A constant stays constant under the kernel, wherever it is sampled: the ratio of successive
-/// sheets of a light gives the density back.
+/// No. 1: A constant remains constant under the kernel, wherever it is sampled: the ratio of successive sheets of a
+/// light gives the density back.
 fn kernels_are_a_partition_of_unity(engine: Engine) {
     let per_slab = 1.0;
     let n = 32;
@@ -24,7 +24,7 @@ fn kernels_are_a_partition_of_unity(engine: Engine) {
     for light in [[0.31, -0.62, 0.77], [-0.9, 0.2, 0.13]] {
         let mut settings = base(engine, per_slab);
         settings.lights[0].position = light;
-        // Sheets that deposit what arrives: successive ratios are e^−τ of one slab.
+        // Sheets that deposit the arriving light: successive ratios are e^−τ of one slab.
         settings.shadows.deposit = Deposit::Front;
         let sheets = renderer().light_sheets(&loaded, &settings, 0, 0).expect("sheets");
         let view = &chiaroscuro::plan::light_views(
@@ -57,7 +57,7 @@ fn thinner_slabs_converge(engine: Engine) {
     for (deposit, order) in [(Deposit::Front, ORDER_FRONT), (Deposit::SlabMean, ORDER_MEAN)] {
         let volume = |slab: f64| {
             let mut settings = base(engine, 0.3);
-            // Along the grid: what is left is the slabs' error alone.
+            // Along the grid: the remaining error is that of the slabs alone.
             settings.lights[0].position = [0.0, 0.0, 1.0];
             settings.shadows.deposit = deposit;
             settings.shadows.slab = slab;
@@ -71,7 +71,7 @@ fn thinner_slabs_converge(engine: Engine) {
     }
 }
 
-/// No. 17: Noise, emptiness and solidity give numbers, and nothing is exactly the background.
+/// No. 17: Noise, empty and solid volumes give finite numbers, and empty ones exactly the background.
 fn extremes_stay_finite(engine: Engine) {
     let noise: Vec<u8> = (0..32usize.pow(3)).map(|i| (i.wrapping_mul(2654435761) >> 13) as u8).collect();
     let noise = chiaroscuro::data::Volume::with_spacing(

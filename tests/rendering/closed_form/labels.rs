@@ -1,4 +1,5 @@
-//! Numbers of labels are never mixed: between labels 3 and 9 is no shell of those from 4 to 8.
+//! Label interpolation: label numbers are never mixed, so that there is no shell of labels 4 to 8 between labels 3
+//! and 9.
 
 use chiaroscuro::data::{Samples, Volume};
 use chiaroscuro::model::{
@@ -13,10 +14,10 @@ with_both_engines! {
     labels_between_are_not_seen
 }
 
-/// Voxels along an edge.
+/// Number of voxels along an edge.
 const N: usize = 32;
 
-/// A ball of label 9 within one of label 3, amid nothing.
+/// Ball of label 9 within one of label 3, in empty space.
 fn nested_balls() -> Dataset {
     let label = |at: usize| {
         let p = DVec3::new((at % N) as f64, (at / N % N) as f64, (at / N / N) as f64);
@@ -30,7 +31,7 @@ fn nested_balls() -> Dataset {
     Dataset::new(Volume::with_spacing("balls", [N; 3], DVec3::ONE, Samples::U8(values)).expect("a volume"))
 }
 
-/// Label 3 is blue and faint, label 9 red; all others are green.
+/// Look in which label 3 is blue and faint, label 9 red, and all others green.
 fn look(engine: Engine) -> Settings {
     let steps = [
         (0.5, [0.0, 1.0, 0.0], 0.0),
@@ -68,13 +69,13 @@ fn labels_between_are_not_seen(engine: Engine) {
             let [red, green, blue] = brightest(&settings);
             assert!(red > 0.1 && blue > 0.02, "{kernel:?} from {distance}: {red} {blue}");
             assert!(green == 0.0, "{kernel:?} from {distance}: {green}");
-            // If what is spread is classified, the shells are there.
+            // Classified after interpolation, the shells appear.
             settings.sampling.classification = Classification::Post;
             let [_, green, _] = brightest(&settings);
             assert!(green > 0.02, "{kernel:?} from {distance}: {green}");
         }
     }
-    // Light, too, meets none of them: with its own table green is the only thing that attenuates it.
+    // Light meets none of them either: in its own table only green attenuates it.
     let mut settings = look(engine);
     settings.lighting.linked = false;
     settings.lighting.curve = TransferFunction {

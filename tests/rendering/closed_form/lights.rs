@@ -1,4 +1,4 @@
-//! Lights and their shadows: at the eye, behind a ball, far away, and under a hood.
+//! Lights and shadows in closed form: a headlight, the shadow of a ball, a distant light, and a spotlight.
 
 use chiaroscuro::gpu::Picture;
 use chiaroscuro::model::{Deposit, Engine, Hood, LightKind, ReverseKernel, ShadowAlgorithm};
@@ -30,7 +30,7 @@ fn headlight(engine: Engine, deposit: Deposit, slab: f64) -> f64 {
     let loaded = Dataset::new(scenes::block(n, |[x, y, z]| {
         (6..26).contains(&y) && x > 2 && z > 2 && x < 37 && z < 37
     }));
-    // From −y, as the eye of `straight(-90, 0)`.
+    // From −y, like the eye of `straight(-90, 0)`.
     let mut settings = base(engine, 0.7);
     settings.lights[0].position = [0.0, -1.0, 0.0];
     settings.shadows.deposit = deposit;
@@ -39,8 +39,8 @@ fn headlight(engine: Engine, deposit: Deposit, slab: f64) -> f64 {
     middle_red(&render(&mut renderer(), &loaded, &settings, [48, 48]))
 }
 
-/// No. 4: Light from the eye's direction, material that scatters evenly, optically thick:
-/// C = ∫ T·T dτ = ½, whatever the density.
+/// No. 4: Light from the eye's direction, isotropic material, optically thick: C = ∫ T·T dτ = ½, whatever the
+/// density.
 fn headlight_gives_one_half(engine: Engine) {
     let errors = |deposit| [1.0, 0.5, 0.25].map(|slab| headlight(engine, deposit, slab) - 0.5);
     let mean = errors(Deposit::SlabMean);
@@ -86,7 +86,7 @@ fn shadow_of_a_ball(engine: Engine) {
     assert!((middle - exact).abs() <= BALL_SHADOW, "{middle} not {exact}");
 }
 
-/// No. 15: A point light a hundred volumes away is a parallel light.
+/// No. 15: A point light at a distance of a hundred volumes is a parallel light.
 fn a_far_point_light_is_parallel(engine: Engine) {
     let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
     let mut settings = scenes::look();
@@ -101,10 +101,10 @@ fn a_far_point_light_is_parallel(engine: Engine) {
     compare("far light", &far, &near, limit).unwrap_or_else(|err| panic!("{err}"));
 }
 
-/// No. 15: A hood lets nothing out beyond its rim, everything within, and fades smoothly between.
+/// No. 15: A spotlight is dark outside its cone, full inside, and falls off smoothly at the rim.
 fn a_hood_is_a_cone_with_a_soft_rim(engine: Engine) {
     let n = 40;
-    // One voxel, that the volume is not empty; the light passes the rest unhindered.
+    // One voxel, so that the volume is not empty; the light passes the rest unattenuated.
     let loaded = Dataset::new(scenes::block(n, |voxel| voxel == [0; 3]));
     for algorithm in [ShadowAlgorithm::Splat, ShadowAlgorithm::Raycast] {
         let mut settings = base(engine, 1.0);
@@ -139,8 +139,8 @@ fn a_hood_is_a_cone_with_a_soft_rim(engine: Engine) {
     }
 }
 
-/// Light along the rows of voxels beside a flat face: dark rows lie beside lit ones, and none takes light from the next.
-/// A row attenuates light as its own reconstructed density says, whether a voxel or a face of two lies in the middle.
+/// Light along rows of voxels beside a flat face: dark rows lie beside lit ones, without bleeding. A row attenuates
+/// light by its own reconstructed density, whether a voxel or a face of two lies in the middle.
 #[test]
 fn light_along_a_face_stays_in_its_rows() {
     for n in [40, 41] {

@@ -1,4 +1,4 @@
-//! Scenes whose answer is known in closed form, on the GPU path.
+//! Tests of the GPU in scenes with a closed-form solution.
 
 use chiaroscuro::gpu::Renderer;
 use chiaroscuro::model::{Engine, Length, LightKind, Settings};
@@ -37,7 +37,7 @@ pub(crate) fn base(engine: Engine, per_voxel: f64) -> Settings {
     settings
 }
 
-/// Makes a test of each check, for each of the engines.
+/// Generates a test of each check for each of the two engines.
 macro_rules! with_both_engines {
     ($($check:ident)+) => {
         mod gathered {

@@ -1,5 +1,5 @@
-//! Pictures beside those of a path tracer that follows light until it has been scattered once, in steep material:
-//! where they are seen and what of the light arrives there are both drawn by lot, without steps and without slabs.
+//! Brightness against a path tracer of single scattering in dense material: the visible point and its transmittance
+//! to the light are both sampled at random, without steps and without slabs.
 
 use chiaroscuro::data::KindName;
 use chiaroscuro::data::synthetic::builtin;
@@ -14,13 +14,13 @@ use crate::scenes::{self, isotropic};
 use crate::thresholds::{TRACED_EXACT, TRACED_STANDARD};
 use crate::tracing::{Lots, Material};
 
-/// Pictures are so many pixels wide and high: pixels are narrower than voxels, so that no kernel is stretched.
+/// Width and height of pictures in pixels: pixels are narrower than voxels, so that no kernel is stretched.
 const SIZE: u32 = 160;
 
-/// Paths of each pixel.
+/// Number of paths per pixel.
 const PATHS: u32 = 32;
 
-/// The mean over all pixels of the light that arrives where each is met first, and how uncertain that is.
+/// Mean over all pixels of the light at their first interaction, and its uncertainty.
 fn traced(loaded: &Dataset, settings: &Settings) -> (f64, f64) {
     let volume = loaded.volume();
     let scene = volume.scene();
@@ -30,7 +30,7 @@ fn traced(loaded: &Dataset, settings: &Settings) -> (f64, f64) {
     let to_light = scene.index_from_scene.transform_vector3(light.direction());
     let first = frame.first_depth;
     let length = frame.slab * f64::from(frame.slab_count);
-    // Two estimates of each pixel: how much they differ says how much chance is left in the mean.
+    // Two estimates of each pixel: their difference gives the noise of the mean.
     let estimates: Vec<[f64; 2]> = (0..SIZE * SIZE)
         .into_par_iter()
         .map(|pixel| {
@@ -52,20 +52,20 @@ fn traced(loaded: &Dataset, settings: &Settings) -> (f64, f64) {
     (mean, 0.5 * squares.sqrt() / count)
 }
 
-/// Box, sphere and cloud, white and steep: the mean of the picture is the path tracer's.
+/// The mean of pictures of box, sphere and cloud, white and dense, equals the path tracer's.
 #[test]
 fn pictures_are_as_bright_as_a_path_tracers() {
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     for name in ["box", "sphere", "cloud"] {
         let loaded = Dataset::new(builtin(name, Some(64)).expect("a built-in volume"));
-        // A ramp of opacities, also of the box, which is a mask.
+        // A ramp of opacities, also for the box, which is a mask.
         let wishes = Wishes { treated_as: Some(KindName::Scalar), ..Wishes::default() };
         let mut settings = auto::first_settings_with(loaded.volume(), loaded.histogram(), wishes);
         scenes::seen_as_earlier(&mut settings);
         isotropic(&mut settings);
         settings.camera.projection = Projection::Orthographic;
         settings.lights = vec![scenes::light(LightKind::Parallel, [-2.2, -1.2, 1.6])];
-        // More than half of the light ends within a voxel.
+        // More than half of the light is absorbed within a voxel.
         settings.opacity_unit = Length::Voxels(1.0);
         for point in &mut settings.transfer.points {
             point.opacity = point.opacity.min(1.0 - (-0.84_f64).exp());
@@ -79,7 +79,7 @@ fn pictures_are_as_bright_as_a_path_tracers() {
             [sum(0), sum(3)].map(|sum| sum / f64::from(SIZE * SIZE))
         };
         let (expected, doubt) = traced(&loaded, &settings);
-        // What material that light reaches unhindered looks like.
+        // Material under unattenuated light.
         let mut unshadowed = settings.clone();
         unshadowed.shadows.algorithm = ShadowAlgorithm::Off;
         let [full, opaque] = mean(&unshadowed);

@@ -1,4 +1,5 @@
-//! Where data end, and where voxels are missing, material ends, whatever the transfer function.
+//! Presence in closed form: material ends with the grid, and where voxels are missing, whatever the transfer
+//! function.
 
 use chiaroscuro::data::{Samples, Volume};
 use chiaroscuro::model::{
@@ -18,10 +19,10 @@ with_both_engines! {
     lobes_of_either_sign_look_alike
 }
 
-/// Voxels along an edge.
+/// Number of voxels along an edge.
 const N: usize = 24;
 
-/// Extinction `per_voxel` at every value.
+/// Transfer function with extinction `per_voxel` at every value.
 fn all_opaque(per_voxel: f64) -> TransferFunction {
     let point = |value| ControlPoint::new(value, [1.0; 3], 1.0 - (-per_voxel).exp());
     TransferFunction {
@@ -31,7 +32,7 @@ fn all_opaque(per_voxel: f64) -> TransferFunction {
     }
 }
 
-/// Extinction falls from `per_voxel` at the lowest value to nothing at the highest.
+/// Transfer function whose extinction falls from `per_voxel` at the lowest value to 0 at the highest.
 fn falling(per_voxel: f64) -> TransferFunction {
     let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     TransferFunction {
@@ -41,14 +42,14 @@ fn falling(per_voxel: f64) -> TransferFunction {
     }
 }
 
-/// A volume of the lowest or the highest value; a voxel in a corner has the other, so that the values span a range.
+/// Volume of the lowest or the highest value; a voxel in a corner has the other, so that the values span a range.
 fn constant(value: u8) -> Dataset {
     let mut values = vec![value; N * N * N];
     values[0] = 255 - value;
     Dataset::new(Volume::with_spacing("constant", [N; 3], DVec3::ONE, Samples::U8(values)).expect("a volume"))
 }
 
-/// The share of a kernel's weights on voxels 0, 1, 2 …, `depth` voxels behind the edge before voxel 0.
+/// Share of a kernel's weights on voxels 0, 1, 2 …, `depth` voxels behind the edge before voxel 0.
 fn edge_profile(kernel: Kernel, depth: f64) -> f64 {
     let weight = |away: f64| match kernel {
         // [1, 10, 1] / 12, and the tent of a linear fetch.
@@ -58,11 +59,11 @@ fn edge_profile(kernel: Kernel, depth: f64) -> f64 {
     (0..4).map(|voxel| weight(depth - 0.5 - f64::from(voxel))).sum()
 }
 
-/// Along an axis, a ray sees 1 − e^(−μ·n) of a volume of one value, times the kernel's edge profile beside it.
+/// Along an axis, the opacity of a constant volume is 1 − e^(−μ·n), times the kernel's edge profile beside it.
 fn a_constant_volume_ends_at_its_faces(engine: Engine) {
     let per_voxel = 0.04;
     for classification in [Classification::Post, Classification::Pre] {
-        // At the lowest value, extinction is what the function has there.
+        // At the lowest value, extinction is that of the transfer function.
         for (value, transfer) in
             [(0, all_opaque(per_voxel)), (0, falling(per_voxel)), (255, all_opaque(per_voxel))]
         {
@@ -102,7 +103,7 @@ fn a_constant_volume_ends_at_its_faces(engine: Engine) {
     }
 }
 
-/// A slab of missing voxels in a volume of one value is a slab of nothing.
+/// A slab of missing voxels in a constant volume is empty.
 fn holes_are_empty(engine: Engine) {
     let per_voxel = 0.04;
     let values = (0..N * N * N).map(|at| match at / N % N {
@@ -124,7 +125,7 @@ fn holes_are_empty(engine: Engine) {
     }
 }
 
-/// A signed wave: its picture is that of the negative wave with the colours of the lobes exchanged.
+/// The picture of a signed wave is that of the negative wave with the colours of the lobes exchanged.
 fn lobes_of_either_sign_look_alike(engine: Engine) {
     let wave = |sign: f64| {
         let value = |at: usize| {

@@ -1,5 +1,4 @@
-//! Light from all around in scenes where what is open of the sky is known in closed form: on the reference, and on the
-//! GPU.
+//! Sky visibility in scenes with a known solution, on the reference and on the GPU.
 
 use chiaroscuro::data::{Dataset, Samples, Volume};
 use chiaroscuro::gpu::Renderer;
@@ -11,25 +10,25 @@ use crate::common::context;
 use crate::scenes::{self, linear_extinction};
 use crate::thresholds::{OPENNESS, OPENNESS_BESIDE_A_WALL};
 
-/// From so many directions, as finely as can be.
+/// White sky with a number of directions, at full resolution.
 fn white(directions: u32) -> Sky {
     Sky { mode: SkyMode::White, directions, resolution: Resolution::Full, ..Sky::default() }
 }
 
-/// What is open at a voxel: V₁ and V₀.
+/// Sky-visibility moments at a voxel: V₁ and V₀.
 struct Found {
     mean: f64,
     first: DVec3,
 }
 
 impl Found {
-    /// The irradiance over π of a surface under a white sky of 1.
+    /// Irradiance over π of a surface under a white sky of 1.
     fn on_a_surface(&self, normal: DVec3) -> f64 {
         self.mean + 2.0 * normal.dot(self.first)
     }
 }
 
-/// What the reference and the GPU find at some voxels of a scene, from so many directions.
+/// Sky-visibility moments of reference and GPU at some voxels of a scene, for a number of directions.
 fn found(
     dims: [usize; 3],
     (per_voxel, directions): (f64, u32),
@@ -39,7 +38,7 @@ fn found(
     let [nx, ny, nz] = dims;
     let place = |at: usize| DVec3::new((at % nx) as f64, (at / nx % ny) as f64, (at / (nx * ny)) as f64);
     let mut values: Vec<u8> = (0..nx * ny * nz).map(|at| (255.0 * full(place(at))).round() as u8).collect();
-    // So that values span their range.
+    // So that the values span their range.
     values[0] = 255 - values[0];
     let volume = Volume::with_spacing("sky", dims, DVec3::ONE, Samples::U8(values)).expect("a volume");
     let settings = Settings {
@@ -84,7 +83,7 @@ fn empty_space_is_open() {
     }
 }
 
-/// The transmittance from a place r from the middle of a ball of radius R and extinction μ to the sky, on the mean:
+/// Mean transmittance to the sky from a point at distance r from the centre of a ball of radius R and extinction μ:
 /// V₀(r) = ½ ∫ e^{−μ (√(R² − r²(1 − u²)) − r u)} du over the cosine u = −1 … 1.
 fn in_a_ball(extinction: f64, radius: f64, r: f64) -> f64 {
     let n = 4000;
@@ -99,7 +98,7 @@ fn a_ball_darkens_towards_its_middle() {
     const RADIUS: f64 = 27.0;
     let middle = DVec3::splat(29.0);
     let full = |p: DVec3| (0.5 + RADIUS - p.distance(middle)).clamp(0.0, 1.0);
-    // Nearer to its border the kernel blurs it.
+    // Nearer to the surface, the kernel blurs it.
     let depths = [0, 13, 24];
     let at = depths.map(|r| [29 + r, 29, 29]);
     for found in found([59; 3], (EXTINCTION, 64), full, &at) {
@@ -110,11 +109,11 @@ fn a_ball_darkens_towards_its_middle() {
     }
 }
 
-/// How far above a floor a place is whose rays the kernel's blur of its border leaves alone, in voxels. Of 64 directions
-/// the lowest fall by a 64th: within 100 voxels they are in that blur, and it stops them. Those that rise clear it.
+/// Height above a floor, in voxels, at which the kernel's blur of its surface does not affect rays. Of 64 directions
+/// the lowest fall by a 64th: within 100 voxels they enter that blur, and it stops them. Those that rise clear it.
 const ABOVE: usize = 2;
 
-/// On a floor that nothing shines through half of the sky is open: V₀ = ½, V₁ = n/4, and E = π.
+/// Above an opaque floor half of the sky is visible: V₀ = ½, V₁ = n/4, and E = π.
 #[test]
 fn a_floor_sees_half_the_sky() {
     let full = |p: DVec3| if p.z < 3.5 { 1.0 } else { 0.0 };

@@ -1,4 +1,4 @@
-//! Several lights in one volume of colours (P §4).
+//! Combined lights: several lights in one volume of colours (P §4).
 
 use crate::common::{Dataset, context, render};
 use crate::compare::{compare, difference, flat32};
@@ -10,7 +10,7 @@ use glam::DVec3;
 
 const SIZE: [u32; 2] = [96, 80];
 
-/// Three lights that cast shadows, and one that does not; no highlights.
+/// Look with three lights that cast shadows, and one that does not; no highlights.
 fn look() -> Settings {
     let mut settings = scenes::look();
     let colored = |position, color, kind| Light { color, ..scenes::light(kind, position) };
@@ -24,13 +24,13 @@ fn look() -> Settings {
     settings.shadows.gain = 1.4;
     settings.shadows.bias_voxels = 0.5;
     settings.shadows.storage = LightStorage::PerLight;
-    // A combined volume has none.
+    // A combined volume does not support near-field rays.
     settings.shadows.near_field = NearField::Off;
     settings
 }
 
-/// No. 14: Where material answers evenly, the combined light is the sum of all lights; where it does
-/// not, the angle to the light is interpolated too.
+/// No. 14: For isotropic material, combined light is the sum of all lights; otherwise the angle to the light is
+/// interpolated, too.
 #[test]
 fn combined_light_is_the_sum_of_the_lights() {
     let loaded = Dataset::new(scenes::creature(48, DVec3::new(1.0, 1.2, 1.5)));
@@ -50,7 +50,7 @@ fn combined_light_is_the_sum_of_the_lights() {
     let together = render(&mut renderer, &loaded, &settings, SIZE);
     compare("combined", &flat32(&together.light), &flat32(&apart.light), COMBINED)
         .unwrap_or_else(|err| panic!("{err}"));
-    // With normals: the difference is reported, and must be there, or the test would see nothing.
+    // With normals: the difference is reported, and must exist, or the test would be meaningless.
     let mut settings = look();
     let apart = render(&mut renderer, &loaded, &settings, SIZE);
     settings.shadows.storage = LightStorage::Combined;
@@ -64,7 +64,7 @@ fn combined_light_is_the_sum_of_the_lights() {
     );
 }
 
-/// One volume is kept in place of those of the lights, until one of them changes.
+/// One volume is kept instead of one per light, until a light changes.
 #[test]
 fn a_combined_volume_is_kept_until_a_light_changes() {
     let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
@@ -94,7 +94,7 @@ fn a_combined_volume_is_kept_until_a_light_changes() {
     let recolored = render(&mut renderer, &loaded, &settings, SIZE);
     assert_eq!(fills(&renderer), before + 3, "all lights are filled again");
     assert!(recolored.light != first.light);
-    // Left to itself it combines only where that costs nothing.
+    // The automatic choice combines lights only where that costs nothing.
     settings.shadows.storage = LightStorage::Auto;
     assert!(!settings.combines_lights(), "three volumes take less than one of colours");
     settings.lights.extend(vec![settings.lights[0].clone(); 3]);

@@ -1,5 +1,4 @@
-//! The crop box and the clip plane: against the reference, against closed forms, and what they must leave
-//! alone.
+//! Crop box and clip plane: against the reference, against closed forms, and without side effects.
 
 use chiaroscuro::gpu::Renderer;
 use chiaroscuro::model::{
@@ -17,7 +16,7 @@ use crate::thresholds::{ADDED_OTHERWISE, CHORD_OPACITY, CUT_COMBINED, CUT_LIGHT,
 
 const SIZE: [u32; 2] = [64, 56];
 
-/// Faces across all axes and one across none, some of them through the middle of slabs and voxels.
+/// Faces across all axes and one oblique, some of them through the middle of slabs and voxels.
 fn cuts(crop: CutEffect, plane: CutEffect) -> Cuts {
     Cuts {
         crop: CropBox { on: true, low: [0.21, 0.0, 0.13], high: [1.0, 0.73, 0.9], effect: crop },
@@ -96,7 +95,7 @@ fn the_comparison_notices_whole_slabs() {
     assert!(compare("whole slabs", &flat32(&found.light), &flat64(&expected), SAME_WEIGHTS).is_err());
 }
 
-/// A homogeneous block of 32³ voxels in the middle of 48³, seen along z, of extinction ln 2 per 16 voxels.
+/// Homogeneous block of 32³ voxels in the middle of 48³, seen along z, with extinction ln 2 per 16 voxels.
 fn block() -> (Dataset, Settings) {
     let per_voxel = 2.0_f64.ln() / 16.0;
     let mut settings = Settings {
@@ -111,12 +110,12 @@ fn block() -> (Dataset, Settings) {
     (Dataset::new(scenes::block(48, inside)), settings)
 }
 
-/// Where a share of the block lies in the grid.
+/// Position of a share of the block's edge, as a share of the grid's.
 fn of_block(share: f64) -> f64 {
     (8.0 + 32.0 * share) / 48.0
 }
 
-/// Opacity and brightness in the middle of the picture.
+/// Opacity and brightness at the centre of the picture.
 fn middle(renderer: &mut Renderer, loaded: &Dataset, settings: &Settings) -> (f64, f64) {
     let picture = render(renderer, loaded, settings, [33, 33]);
     let [red, .., alpha] = picture.light[16 * 33 + 16].map(f64::from);
@@ -143,7 +142,7 @@ fn a_chord_is_as_opaque_as_what_remains_of_it() {
         // Thinner than a slab.
         settings.cuts.crop.high[2] = of_block(0.31);
         close(opacity(&settings), 32.0 * 0.01);
-        // 24 voxels to a scene unit. The middle pixel looks through its centre.
+        // There are 24 voxels to a scene unit. The middle pixel looks through its centre.
         settings.cuts.plane =
             ClipPlane { on: true, normal: [0.0, 0.0, 3.0], offset: 0.25, ..Default::default() };
         settings.cuts.crop.on = false;
@@ -157,8 +156,7 @@ fn a_chord_is_as_opaque_as_what_remains_of_it() {
     }
 }
 
-/// The light comes from where the eye is: what is removed in front of the rest takes no light, what is only
-/// hidden does.
+/// Removed material does not attenuate light; hidden material does. The light comes from the eye.
 #[test]
 fn effects_tell_eye_and_light_apart() {
     let (loaded, mut settings) = block();
@@ -170,7 +168,7 @@ fn effects_tell_eye_and_light_apart() {
     };
     let (removed, hidden, shadowless) =
         (with(CutEffect::Removed), with(CutEffect::Hidden), with(CutEffect::Shadowless));
-    // 16 voxels halve the light; half of it is met again in each case but the last.
+    // 16 voxels halve the light; half of it remains in each case but the last.
     assert!(
         (removed.0 - 0.5).abs() < CUT_LIGHT && (hidden.0 - 0.5).abs() < CUT_LIGHT,
         "{removed:?} {hidden:?}"
@@ -194,7 +192,7 @@ fn cuts_of_nothing_change_no_bit() {
     settings.cuts.crop = CropBox { on: true, ..CropBox::default() };
     assert!(shown(&settings) == before, "a box around everything");
     settings.cuts.plane = ClipPlane { on: true, offset: 2.0, ..ClipPlane::default() };
-    // A compiler adds the steps of rays nearby in another order when each has a factor of 1.
+    // A compiler adds the steps of near-field rays in another order when each has a factor of 1.
     compare("a plane beyond everything", &flat32(&shown(&settings)), &flat32(&before), ADDED_OTHERWISE)
         .unwrap_or_else(|err| panic!("{err}"));
     settings.shadows.near_field = NearField::Off;
@@ -225,7 +223,7 @@ fn the_light_is_kept_while_only_the_eye_is_concerned() {
     assert_eq!(rebuilds(&settings), 2);
 }
 
-/// Volume-aligned sheets and single footprints are other sums; what is cut away must be the same.
+/// Volume-aligned sheets and single footprints are summed differently; they must be cut at the same place.
 #[test]
 fn historical_orders_are_cut_too() {
     let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));

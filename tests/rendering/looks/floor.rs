@@ -1,4 +1,4 @@
-//! The floor: against the reference, against closed forms, and under the picture.
+//! Floor: against the reference, against closed forms, and below the picture.
 
 use chiaroscuro::gpu::{RenderOptions, Renderer};
 use chiaroscuro::model::{
@@ -23,7 +23,7 @@ fn on(settings: Settings) -> Settings {
     Settings { floor: Floor { on: true, height: -0.9, ..Floor::default() }, ..settings }
 }
 
-/// What is seen of the floor past the volume, by both sides.
+/// Compares the visible floor beside the volume with the reference.
 fn check(name: &str, size: [u32; 2], spacing_mm: DVec3, settings: &Settings) {
     check_within(name, size, spacing_mm, settings, SAME_WEIGHTS);
 }
@@ -32,7 +32,7 @@ fn check_within(name: &str, size: [u32; 2], spacing_mm: DVec3, settings: &Settin
     check_against(size, spacing_mm, [settings; 2], name, limit);
 }
 
-/// The floor of the GPU with one look, and of the reference with another.
+/// Compares the floor of the GPU under one look with that of the reference under another.
 fn check_against(
     size: [u32; 2],
     spacing_mm: DVec3,
@@ -47,7 +47,7 @@ fn check_against(
     compare(name, &found, &expected, limit).unwrap_or_else(|err| panic!("{err}"));
 }
 
-/// The floor of a GPU's renderer with one look past what covers it, and of the reference with another.
+/// Floor of a renderer under one look where it is not covered, and of the reference under another.
 fn seen(
     renderer: &mut Renderer,
     size: [u32; 2],
@@ -94,7 +94,7 @@ fn floor_and_shadows_as_in_the_reference() {
     check("shadow alone, and cut", SIZE, DVec3::ONE, &settings);
 }
 
-/// A lamp and a sun that have a size, the lamp partly below the floor: by rays, and on maps, which are interpolated.
+/// Area lights, one of them partly below the floor: by rays, and on maps, which are interpolated.
 #[test]
 fn penumbrae_on_the_floor_as_in_the_reference() {
     let mut settings = on(scenes::look());
@@ -110,7 +110,7 @@ fn penumbrae_on_the_floor_as_in_the_reference() {
     settings.floor.height = -1.05;
     settings.shadows.area.resolution = Resolution::Full;
     check_within("on maps", SIZE, DVec3::ONE, &settings, FLOOR_PENUMBRA);
-    // A lamp within the cube of its own sheets.
+    // A light within the bounding cube of its own sheets.
     settings.lights[1].position = [0.9, -0.8, 0.7];
     settings.lights[1].shape = LightShape::Ball;
     settings.lights[1].size = 0.4;
@@ -123,7 +123,7 @@ fn penumbrae_on_the_floor_as_in_the_reference() {
     assert!(found.is_err(), "a light that is half as wide is noticed");
 }
 
-/// A map of what the floor sees is interpolated, and the reference asks at every pixel.
+/// The sky visibility of the floor is interpolated from a map, while the reference evaluates every pixel.
 #[test]
 fn it_takes_the_light_of_a_sky() {
     let mut settings = on(scenes::look());
@@ -144,7 +144,7 @@ fn it_takes_the_light_of_a_sky() {
     settings.shadows.algorithm = ShadowAlgorithm::Off;
     settings.floor.shadow_only = false;
     check("nothing in its way", SIZE, DVec3::ONE, &settings);
-    // It is no other picture.
+    // Guards the comparison: another sky is detected.
     settings.shadows.algorithm = ShadowAlgorithm::Splat;
     let dark = Settings { sky: Sky { intensity: 0.5, ..settings.sky.clone() }, ..settings.clone() };
     let found = std::panic::catch_unwind(|| {
@@ -153,11 +153,11 @@ fn it_takes_the_light_of_a_sky() {
     assert!(found.is_err(), "half as bright a sky is noticed");
 }
 
-/// A floor that cuts through what stands on it has the light that comes to its height, and each mistake in how it is followed
-/// there shows.
+/// A floor that cuts through an object receives the light at its height, and each mistake in how it is traced there
+/// is detected.
 #[test]
 fn light_of_a_sky_ends_where_it_meets_the_floor() {
-    // In a corner of its grid, and below the floor, too.
+    // In a corner of its grid, and extending below the floor.
     let loaded =
         Dataset::new(scenes::block(32, |[x, y, z]| x < 14 && y < 12 && (4..30).contains(&z) && x + y < 20));
     let mut settings = on(scenes::look());
@@ -172,13 +172,13 @@ fn light_of_a_sky_ends_where_it_meets_the_floor() {
     };
     assert!(!disagrees("\u{0}", ""), "undamaged sides agree");
     let mistakes = [
-        // Through the floor, and not to it.
+        // Through the floor, instead of to it.
         ("sky/floor_sweep.wgsl", "min(span.y, end)", "span.y"),
         ("sky/floor_sweep.wgsl", "min(span.y, end)", "min(span.y, end - 1.0)"),
         ("sky/floor_sweep.wgsl", "map.plane.w - dot", "-dot"),
-        // Less of it is left at the floor than on the mean over the last slice.
+        // Transmittance at the floor is lower than the mean over the last slice.
         ("sky/floor_sweep.wgsl", "slab_mean(tau), n == end", "slab_mean(tau), n > end"),
-        // Light that passes the grid by is that of its border.
+        // Light that passes beside the grid is taken from its border.
         ("sky/floor_sweep.wgsl", "select(min(span.y, end), -1.0, is_beside)", "min(span.y, end)"),
         ("sky/floor_map.wgsl", "ray + 1.5", "ray + 1.0"),
         ("sky/floor_map.wgsl", "f32(i) + 0.5) * sweep", "0.5) * sweep"),
@@ -189,7 +189,8 @@ fn light_of_a_sky_ends_where_it_meets_the_floor() {
     }
 }
 
-/// A place beside what hides a quarter of the sky at most is as bright as the sky says, and one under it darker.
+/// The floor beside an object that hides at most a quarter of the sky is as bright as the sky gives, and darker under
+/// it.
 #[test]
 fn it_is_dark_below_and_bright_beside_the_object() {
     let loaded =
@@ -213,7 +214,7 @@ fn it_is_dark_below_and_bright_beside_the_object() {
     assert!(least < 0.4 * open, "{least} of {open}");
 }
 
-/// The floor lies under the object, and looks up, whichever axis that is along.
+/// The floor lies under the object, and faces up, for every up axis.
 #[test]
 fn it_lies_below_whatever_is_up() {
     for up in SceneAxis::ALL {
@@ -235,7 +236,7 @@ fn every_algorithm_and_engine_has_it() {
         render(&mut renderer, &loaded, &settings, SIZE);
         shadows.push(renderer.read_floor().expect("a floor"));
     }
-    // Pixels that the volume nearly covers are not drawn, and which these are may differ.
+    // Pixels that the volume nearly covers are not drawn, and the set of these may differ.
     let differ = |a: &[[f32; 4]], b: &[[f32; 4]]| a.iter().zip(b).filter(|(a, b)| a != b).count();
     for other in &shadows[1..] {
         let share = differ(&shadows[0], other) as f64 / shadows[0].len() as f64;
@@ -248,8 +249,8 @@ fn every_algorithm_and_engine_has_it() {
     assert!(bare.iter().zip(&shadows[0]).all(|(bare, shadowed)| bare[0] >= shadowed[0] - F16_STEP));
 }
 
-/// A block of 32³ voxels of extinction ln 2 per 16 voxels, under a light straight above it: a quarter of the
-/// light gets through.
+/// Block of 32³ voxels with extinction ln 2 per 16 voxels, under a light straight above it: a quarter of the light is
+/// transmitted.
 #[test]
 fn what_a_block_lets_through_falls_on_the_floor() {
     let inside = |at: [usize; 3]| at.iter().all(|c| (8..40).contains(c));
@@ -258,7 +259,7 @@ fn what_a_block_lets_through_falls_on_the_floor() {
         transfer: linear_extinction(2.0_f64.ln() / 16.0),
         opacity_unit: Length::Voxels(1.0),
         lights: vec![scenes::light(LightKind::Parallel, [0.0, 0.0, 1.0])],
-        // From above, past the block: it looks at the floor beside the middle.
+        // From above, past the block: it looks at the floor beside the centre.
         camera: straight(-90.0, 60.0),
         ..Settings::default()
     };
@@ -267,7 +268,7 @@ fn what_a_block_lets_through_falls_on_the_floor() {
     settings.floor = Floor { on: true, height: -3.0, color: [1.0; 3], radius: 50.0, ..Floor::default() };
     let camera = settings.camera.clone();
     let mut renderer = Renderer::new(&context().with_full_precision()).expect("a renderer");
-    // Where a point of the floor is seen.
+    // Aims at a point of the floor.
     settings.camera.target = [0.0, 0.0, -3.0];
     let picture = render(&mut renderer, &loaded, &settings, [65, 65]);
     let floor = renderer.read_floor().expect("a floor");
@@ -278,7 +279,7 @@ fn what_a_block_lets_through_falls_on_the_floor() {
     render(&mut renderer, &loaded, &settings, [65, 65]);
     let floor = renderer.read_floor().expect("a floor");
     assert!((f64::from(floor[at][0]) - 1.0).abs() < FLOOR_SHADOW, "beside the shadow: {:?}", floor[at]);
-    // From below there is none.
+    // The floor is invisible from below.
     settings.camera = Camera { elevation_deg: -30.0, ..camera };
     render(&mut renderer, &loaded, &settings, [65, 65]);
     assert!(renderer.read_floor().expect("a floor").iter().all(|texel| *texel == [0.0; 4]));

@@ -1,4 +1,4 @@
-//! What single settings do to a picture: combined lights, cuts, the floor, far away, other algorithms.
+//! Effects of single settings on a picture: combined lights, cuts, the floor, stretched kernels, shadow algorithms.
 
 mod combine;
 mod cuts;

@@ -1,4 +1,4 @@
-//! Rays nearby: what shades a point from within a few voxels is found by a short ray.
+//! Near-field rays: shadows from material within a few voxels are traced by a short ray.
 
 use chiaroscuro::data::synthetic::builtin;
 use chiaroscuro::gpu::Renderer;
@@ -12,8 +12,8 @@ use crate::compare::wide;
 use crate::scenes::{self, isotropic, linear_extinction, straight};
 use crate::thresholds::{LOOKED_UP_BELOW_A_FACE, NEAR_A_FACE, PREFILTERED_LIGHT};
 
-/// Mass of the cubic B-spline beyond `depth` voxels below the face of homogeneous material, which is half a voxel from
-/// its last voxels: ∫ from there to the light of the density that the kernel reconstructs.
+/// Density integral of a perpendicular ray to the light, from `depth` voxels below the face of homogeneous material,
+/// which is half a voxel from its last voxels, by the density that the cubic B-spline reconstructs.
 fn way_through_face(depth: f64) -> f64 {
     let kernel = |d: f64| {
         let d = d.abs();
@@ -32,8 +32,8 @@ fn way_through_face(depth: f64) -> f64 {
     (0..steps).map(|step| density(from + (f64::from(step) + 0.5) * width)).sum::<f64>() * width
 }
 
-/// An eye inside opaque, homogeneous material sees how much of oblique light arrives just below the lit face:
-/// with rays nearby as much as physics says, without them what three blurs leave of it.
+/// An eye inside opaque, homogeneous material sees how much oblique light arrives just below the lit face: with
+/// near-field rays the physical amount, without them that after three blurs.
 #[test]
 fn light_below_a_face_is_what_arrives_there() {
     let n = 48;
@@ -76,7 +76,7 @@ fn light_below_a_face_is_what_arrives_there() {
     assert!(short <= NEAR_A_FACE && long <= NEAR_A_FACE, "{short} {long}");
 }
 
-/// What the prefiltered kernel blurs more than the B-spline of the light pass is nearer to a surface than rays nearby end.
+/// A prefiltered light pass blurs more than the B-spline, but only closer to a surface than near-field rays end.
 #[test]
 fn a_prefiltered_light_pass_is_as_true_behind_rays_nearby() {
     let loaded = Dataset::new(builtin("chair", Some(64)).expect("the chair"));

@@ -1,4 +1,4 @@
-//! Narrow peaks of transfer functions: slabs that are as thin as they need to be step over none.
+//! Narrow peaks of transfer functions, which slabs by need must not skip.
 
 use chiaroscuro::gpu::{Renderer, mean_luminance};
 use chiaroscuro::model::{Camera, ControlPoint, Interpolation, Slabs, TransferFunction};
@@ -9,7 +9,7 @@ use crate::compare::{compare, flat32, wide};
 use crate::scenes;
 use crate::thresholds::{PEAK, PEAK_MEAN};
 
-/// A shell that is a tenth of a voxel thick, in a ball with a soft edge: a sample to each voxel misses most of it.
+/// Shell that is a tenth of a voxel thick, in a ball with a soft edge: one sample per voxel misses most of it.
 #[test]
 fn a_thin_shell_is_seen_whole() {
     let loaded = Dataset::new(scenes::ball(48, DVec3::splat(23.5), 16.0));

@@ -1,4 +1,4 @@
-//! One head with an L on its left, written by other programs in every format, with other axes first and counted in other
+//! Phantom of a head with an L on its left, written by other programs in every format, with other axis orders and
 //! directions (`tests/oracle/phantom/`): the picture is the same.
 
 use std::path::{Path, PathBuf};
@@ -14,16 +14,16 @@ use crate::compare::{compare, flat32};
 use crate::scenes;
 use crate::thresholds::SAME_HEAD;
 
-/// How the head lies: along the axes of the body, or aslant with voxels of three lengths.
+/// Orientations of the head: along the axes of the body, or oblique with voxels of three lengths.
 const LIES: [&str; 2] = ["straight", "aslant"];
 
-/// Files of a head that lies so; the first is the one that others are compared with.
+/// Files of a head in one orientation; the first is the one that others are compared with.
 fn files(lie: &str) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/oracle/phantom");
     let mut found: Vec<PathBuf> = std::fs::read_dir(folder)
         .expect("the folder is there")
         .map(|entry| entry.expect("it can be listed").path())
-        // Bare numbers are opened by their description.
+        // Raw data are opened through their description.
         .filter(|path| path.extension().is_some_and(|ending| ending != "bin"))
         .filter(|path| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(lie)))
         .collect();
@@ -35,7 +35,7 @@ fn open(path: &Path) -> Volume {
     load(path, &LoadOptions::default(), &LoadControl::new()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// From the left, the front and above, with a light from the side.
+/// View from the left, front and above, with a light from the side.
 fn look() -> Settings {
     let point = |value, color, opacity| ControlPoint::new(value, color, opacity);
     let transfer = TransferFunction {
@@ -70,7 +70,7 @@ fn a_head_looks_the_same_in_every_format_and_order_of_axes() {
             wrong.extend(compare(&name, &picture(&mut renderer, open(path)), &expected, SAME_HEAD).err());
             count += 1;
         }
-        // A head whose left is its right, or that looks the other way, is another.
+        // Guards the comparison: a mirrored or reversed head differs.
         for turn in [DVec3::new(-1.0, 1.0, 1.0), DVec3::new(1.0, -1.0, 1.0), DVec3::new(1.0, 1.0, -1.0)] {
             let place = DAffine3::from_scale(turn) * first.world_from_index();
             let turned =

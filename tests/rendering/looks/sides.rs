@@ -1,4 +1,4 @@
-//! Surfaces have the side to which opacity falls, whichever way density runs.
+//! Sides of surfaces: they face towards falling opacity, whichever way density runs.
 
 use chiaroscuro::data::{Samples, Volume};
 use chiaroscuro::gpu::Renderer;
@@ -31,7 +31,7 @@ fn look(transfer: TransferFunction) -> Settings {
     Settings { transfer, opacity_unit: Length::Voxels(1.0), ..scenes::look() }
 }
 
-/// Two balls of which one has been turned into its negative, in a medium halfway between; values 0 … 255.
+/// Two balls of which one is the negative of the other, in a medium halfway between; values 0 … 255.
 fn lobes(turned: bool) -> Volume {
     let ball = |p: DVec3, centre: DVec3| (7.0 - p.distance(centre) + 0.5).clamp(0.0, 1.0);
     let values = (0..N * N * N)
@@ -43,13 +43,13 @@ fn lobes(turned: bool) -> Volume {
         })
         .collect();
     let mut values: Vec<f32> = values;
-    // The whole range, far from everything that is seen, so that the middle is the same both ways.
+    // The whole range, in voxels far from everything visible, so that the middle is the same both ways.
     values[0] = 0.0;
     values[N - 1] = 256.0;
     Volume::with_spacing("lobes", [N; 3], DVec3::ONE, Samples::F32(values)).expect("a volume")
 }
 
-/// Both lobes of ±f under a curve that shows either: exchanged, they make the same picture.
+/// Both lobes of ±f under a curve that shows either: exchanged, they give the same picture.
 #[test]
 fn lobes_of_either_sign_look_the_same() {
     let both = curve(&[(20.0, 0.6), (100.0, 0.0), (156.0, 0.0), (236.0, 0.6)]);
@@ -66,7 +66,7 @@ fn lobes_of_either_sign_look_the_same() {
     let (found, turned) = (picture(false, Sides::One), picture(true, Sides::One));
     compare("lobes", &flat32(&found.light), &wide(&turned.light.concat()), MIRRORED)
         .unwrap_or_else(|err| panic!("{err}"));
-    // It is the side that does it: lit from both, highlights lie where density falls, on one of the lobes only.
+    // Guards the comparison: lit from both sides, highlights lie where density falls, on one of the lobes only.
     let (found, turned) = (picture(false, Sides::Two), picture(true, Sides::Two));
     assert!(compare("both sides", &flat32(&found.light), &wide(&turned.light.concat()), MIRRORED).is_err());
 }

@@ -1,5 +1,5 @@
-//! Kernels stretched to the pixel where pixels are wider than voxels (P §4): what is finer than a
-//! pixel becomes even, and what is even stays as it was.
+//! Kernels stretched to the pixel where pixels are wider than voxels (P §4): detail finer than a pixel becomes even,
+//! and uniform material is unchanged.
 
 use crate::common::{Dataset, context, render};
 use crate::scenes::{self, isotropic, linear_extinction, straight};
@@ -8,7 +8,7 @@ use chiaroscuro::gpu::{Renderer, ShaderLibrary};
 use chiaroscuro::model::{Camera, Engine, Length, Settings};
 
 const N: usize = 96;
-/// 4.3 voxels per pixel: no multiple of the checkerboard's period of four.
+/// Width and height of the picture, at 4.3 voxels per pixel: no multiple of the checkerboard's period of four.
 const PIXELS: u32 = 22;
 
 fn renderer(stretches: bool) -> Renderer {
@@ -53,7 +53,7 @@ fn frames(renderer: &mut Renderer, engine: Engine, loaded: &Dataset) -> Vec<Vec<
         .collect()
 }
 
-/// (brightest − darkest) / (brightest + darkest) of a frame; and of one pixel over the frames, the
+/// Contrast of a frame, (brightest − darkest) / (brightest + darkest); and flicker of one pixel over the frames, the
 /// standard deviation over the mean.
 fn unrest(frames: &[Vec<f64>]) -> (f64, f64) {
     let contrast = |frame: &Vec<f64>| {
@@ -69,8 +69,8 @@ fn unrest(frames: &[Vec<f64>]) -> (f64, f64) {
     (worst(&mut frames.iter().map(contrast)), worst(&mut (0..frames[0].len()).map(flicker)))
 }
 
-/// No. 10: A checkerboard finer than the pixels neither shows nor flickers, and without the stretch
-/// it does both; fog is as opaque with the stretch as without.
+/// No. 10: A checkerboard finer than the pixels neither shows nor flickers, and without the stretch it does both; fog
+/// is as opaque with the stretch as without.
 #[test]
 fn stretched_kernels_hide_what_is_finer_than_a_pixel() {
     // Columns along the view, each two voxels wide.

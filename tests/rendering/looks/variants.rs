@@ -1,4 +1,4 @@
-//! What tells the paper's three algorithms apart (P §3.2): how often each of them blurs a shadow.
+//! Shadow edges of the paper's three algorithms (P §3.2): they differ in how often a shadow is blurred.
 
 use crate::common::{Dataset, context, render};
 use crate::scenes::{self, isotropic, linear_extinction, paper, seen_as_earlier, straight};
@@ -17,8 +17,8 @@ fn renderer() -> Renderer {
     Renderer::new(&context().with_full_precision()).expect("a renderer")
 }
 
-/// No. 2 for rays from every sample: an eye inside opaque, homogeneous material looks across the
-/// light and sees e^(−μ·depth) and nothing else.
+/// No. 2 for rays from every sample: an eye inside opaque, homogeneous material looks across the light and sees
+/// e^(−μ·depth) and nothing else.
 #[test]
 fn beer_lambert_by_rays_from_samples() {
     let n = 48;
@@ -62,7 +62,7 @@ fn beer_lambert_by_rays_from_samples() {
     }
 }
 
-/// The same with a light inside of the material, at distances that are no whole number of steps.
+/// No. 2 for rays from every sample with a light inside the material, at distances that are no whole number of steps.
 #[test]
 fn beer_lambert_by_rays_from_samples_to_a_light_inside() {
     let n = 48;
@@ -79,7 +79,7 @@ fn beer_lambert_by_rays_from_samples_to_a_light_inside() {
             ..Settings::default()
         };
         settings.camera.projection = Projection::Perspective;
-        // The eye sees what is right before it.
+        // The eye sees the material right before it.
         settings.camera.target = [0.0, 0.3, 0.0];
         isotropic(&mut settings);
         settings.shadows.algorithm = ShadowAlgorithm::Direct;
@@ -95,8 +95,8 @@ fn beer_lambert_by_rays_from_samples_to_a_light_inside() {
     }
 }
 
-/// A half-plane one voxel thick hangs over a receiver that the eye sees from above, through the
-/// half-plane, which only light meets: the profile of the shadow's optical depth across the edge.
+/// Profile across a shadow's edge, as optical depth. A half-plane one voxel thick hangs over a receiver that the eye
+/// sees from above, through the half-plane, which only light meets.
 fn shadow_profile(algorithm: ShadowAlgorithm, engine: Engine) -> Vec<f64> {
     let n = 24;
     let values = (0..n * n * n)
@@ -139,7 +139,7 @@ fn shadow_profile(algorithm: ShadowAlgorithm, engine: Engine) -> Vec<f64> {
     (80..=400).map(|at| (light(at).ln() - bright.ln()) / (dark.ln() - bright.ln())).collect()
 }
 
-/// Where a falling profile passes a value, in voxels from the geometric edge; 20 pixels per voxel.
+/// Position at which a falling profile crosses a value, in voxels from the geometric edge; 20 pixels per voxel.
 fn crossing(profile: &[f64], value: f64) -> f64 {
     let after = profile.iter().position(|&v| v < value).expect("the profile falls below the value");
     let (high, low) = (profile[after - 1], profile[after]);
@@ -148,8 +148,8 @@ fn crossing(profile: &[f64], value: f64) -> f64 {
     (pixel + 0.5 - 240.0) / 20.0
 }
 
-/// No. 6: Each reconstruction widens the edge of a shadow; the 10–90 % widths are those of one, two
-/// and three blurs of a step, and its middle stays where it is.
+/// No. 6: Each reconstruction widens the edge of a shadow; the 10–90 % widths are those of one, two and three blurs
+/// of a step, and its centre stays in place.
 #[test]
 fn edges_of_shadows_are_as_wide_as_the_blurs() {
     let gathered = EDGE_WIDTHS.map(|(algorithm, width)| (algorithm, Engine::Gather, width));
@@ -167,8 +167,8 @@ fn edges_of_shadows_are_as_wide_as_the_blurs() {
     }
 }
 
-/// No. 9: On a thing with thin and thick parts, splatting is slightly darker than rays from every
-/// sample; every cure for darkness brightens, and the more the stronger it is.
+/// No. 9: On an object with thin and thick parts, splatting is slightly darker than rays from every sample; every
+/// remedy for darkness brightens, and the more the stronger it is.
 #[test]
 fn cures_brighten_and_splatting_is_slightly_darker() {
     let volume = chiaroscuro::data::synthetic::builtin("chair", Some(48)).expect("the chair");

@@ -1,4 +1,4 @@
-//! Pictures drawn in parts, with more samples, and in more than 8 bits.
+//! Tiled rendering, supersampling, and pictures of more than 8 bits.
 
 use chiaroscuro::export::Rows;
 use chiaroscuro::gpu::Renderer;
@@ -11,10 +11,10 @@ use crate::common::{Dataset, context};
 use crate::scenes;
 use crate::thresholds::{EIGHT_BITS, HALF_STEP, HALF_STEP_SEEN, PARTS, SAMPLED_BACKGROUND, TONE_MAP};
 
-/// No multiple of a part's edge, and neither square.
+/// Size of the picture: no multiple of a part's edge, and neither square.
 const SIZE: [u32; 2] = [93, 70];
 
-/// A look with everything that depends on where a pixel is: a background from top to bottom, a floor.
+/// Look with everything that depends on the position of a pixel: a vertical background gradient, a floor.
 fn look() -> Settings {
     let mut settings = scenes::look();
     settings.output.background = Background { top: [0.9, 0.2, 0.1], bottom: [0.1, 0.3, 0.8] };
@@ -40,7 +40,7 @@ fn largest(left: &[f32], right: &[f32]) -> f64 {
     left.iter().zip(right).map(|(a, b)| f64::from((a - b).abs())).fold(0.0, f64::max)
 }
 
-/// Every look with one depth, and every depth with one look.
+/// Tests every look with one depth, and every depth with one look.
 #[test]
 fn parts_are_the_whole_picture() {
     check_parts(|name, depth| name == "perspective" || depth == Depth::Sixteen);
@@ -52,7 +52,7 @@ fn parts_are_the_whole_picture_at_every_depth() {
     check_parts(|_, _| true);
 }
 
-/// Compares parts with the whole for the looks and depths that are meant.
+/// Compares parts with the whole for the looks and depths that `is_meant` selects.
 fn check_parts(is_meant: impl Fn(&str, Depth) -> bool) {
     let loaded = Dataset::new(scenes::creature(40, DVec3::new(1.0, 0.8, 1.6)));
     let mut renderer = Renderer::new(&context()).expect("a renderer");
@@ -74,7 +74,7 @@ fn check_parts(is_meant: impl Fn(&str, Depth) -> bool) {
                 let found = picture(&mut renderer, &loaded, &settings, &shot, parts);
                 let apart = largest(&found, &whole);
                 println!("{name} {depth:?} {parts:?}: {apart:.2e}");
-                // A rounded step of 8 bits, or what positions in 32 bits differ by.
+                // A rounded step of 8 bits, or the difference from positions in 32 bits.
                 let limit = if depth == Depth::Eight { EIGHT_BITS } else { PARTS };
                 assert!(apart <= limit, "{name} {depth:?} {parts:?}: {apart}");
             }
@@ -89,7 +89,7 @@ fn parts_that_lie_elsewhere_are_noticed() {
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let shot = ImageSpec { depth: Depth::Sixteen, ..ImageSpec::new(SIZE) };
     let whole = picture(&mut renderer, &loaded, &look(), &shot, (4096, 1 << 20));
-    // One pixel further right is the smallest mistake that parts can make.
+    // One pixel further right is the smallest error that parts can have.
     let shifted: Vec<f32> = whole.iter().skip(4).chain(&whole[..4]).copied().collect();
     assert!(largest(&shifted, &whole) > 50.0 * PARTS);
 }
@@ -103,7 +103,7 @@ fn samples_are_the_mean_of_a_finer_picture() {
             let shot = ImageSpec { depth: Depth::Linear, transparent, samples, ..ImageSpec::new(SIZE) };
             let found = picture(&mut renderer, &loaded, &look(), &shot, (4096, 93 * 9 * 20));
             let finer = ImageSpec { size: SIZE.map(|n| n * samples), samples: 1, ..shot };
-            // The background of one colour: else it is that of the pixel's middle, not the mean.
+            // The background has one colour: otherwise it is evaluated at the pixel's centre, not averaged.
             let finer = picture(&mut renderer, &loaded, &look(), &finer, (4096, 1 << 20));
             let mean = means(&finer, samples as usize);
             let limit = if transparent { PARTS } else { SAMPLED_BACKGROUND };
@@ -139,7 +139,7 @@ fn sixteen_bits_are_between_the_steps_of_eight() {
         let fine = ImageSpec { depth: Depth::Sixteen, ..shot };
         let fine = picture(&mut renderer, &loaded, &look(), &fine, whole);
         let apart = largest(&coarse, &fine);
-        // Before a background, which is dithered, a whole step.
+        // In front of a background, which is dithered, a whole step.
         assert!(apart < if transparent { HALF_STEP } else { EIGHT_BITS }, "{apart}");
         assert!(apart > HALF_STEP_SEEN, "nothing lies between: {apart}");
     }
@@ -158,7 +158,7 @@ fn linear_light_is_what_the_display_shows() {
     let shown = ImageSpec { depth: Depth::Sixteen, ..shot };
     let shown = picture(&mut renderer, &loaded, &settings, &shown, whole);
     let srgb = |c: f32| if c <= 0.003_130_8 { c * 12.92 } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
-    // Nothing is brighter than white here, so that clipping and laying over commute.
+    // Nothing is brighter than white here, so that clipping and blending commute.
     assert!(linear.iter().all(|&value| value <= 1.0));
     let expected: Vec<f32> =
         linear.chunks(4).flat_map(|c| [srgb(c[0]), srgb(c[1]), srgb(c[2]), c[3]]).collect();

@@ -1,5 +1,5 @@
-//! From linear light to what is written and shown: parts, samples, previews, fewer voxels, the
-//! window, other programs.
+//! Output stages, from linear light to files and screens: tiles, samples, previews, downsampled volumes, the window,
+//! other programs.
 
 mod bands;
 mod dither;

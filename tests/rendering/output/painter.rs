@@ -1,4 +1,4 @@
-//! Pictures in render passes of another program: every byte of what is shown, whatever the format of its target.
+//! Painting into render passes of another program: every byte of the picture, whatever the format of its target.
 
 use chiaroscuro::gpu::{Context, PicturePainter, RenderOptions, Renderer};
 use chiaroscuro::model::Depth;
@@ -8,7 +8,7 @@ use super::window::{SIZE, drawn};
 use crate::common::{Dataset, context};
 use crate::scenes::{creature, look};
 
-/// What a target has after a picture was painted into it, and what the renderer reads back of the picture.
+/// Bytes of a target into which a picture was painted, and those that the renderer reads back.
 fn painted_and_read(context: &Context, format: TextureFormat, options: &RenderOptions) -> [Vec<u8>; 2] {
     let loaded = Dataset::new(creature(16, glam::DVec3::ONE));
     let mut renderer = Renderer::new(context).expect("a renderer");

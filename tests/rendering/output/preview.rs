@@ -1,4 +1,4 @@
-//! What the window shows while something moves, beside what it shows at rest.
+//! Previews of the window compared with the final picture.
 
 use chiaroscuro::data::Histogram;
 use chiaroscuro::data::synthetic::builtin;
@@ -20,7 +20,7 @@ use crate::thresholds::{
 
 const SIZE: [u32; 2] = [192, 144];
 
-/// The picture's mean luminance, at full quality or as a preview.
+/// Mean luminance of a picture at full quality or as a preview.
 fn brightness(
     renderer: &mut Renderer,
     loaded: &Dataset,
@@ -42,7 +42,7 @@ fn brightness(
     mean_luminance(&renderer.read_light().expect("light"))
 }
 
-/// How bright a preview is over the picture, with the key light turned by an angle about the vertical.
+/// Brightness ratio of a preview to the picture, with the key light rotated by an angle about the vertical.
 fn preview_over_picture(
     renderer: &mut Renderer,
     loaded: &Dataset,
@@ -54,17 +54,17 @@ fn preview_over_picture(
     let turn = glam::DQuat::from_rotation_z(angle_deg.to_radians());
     settings.lights[0].position = (turn * glam::DVec3::from(home.lights[0].position)).into();
     let whole = brightness(renderer, loaded, &settings, SIZE, None);
-    // Moved by a hair, so that a coarse light volume is filled for it.
+    // Moved minimally, so that a coarse light volume is filled for it.
     settings.lights[0].position[0] += 1e-6;
     brightness(renderer, loaded, &settings, size, Some(resolution)) / whole
 }
 
-/// The first preview of a drag is exposed to be as bright as the picture before it; until the light has
-/// moved a third of a right angle the exposure must stay right.
+/// The first preview of a drag is exposed to be as bright as the picture before it; until the light has moved by 30°
+/// the exposure must stay right.
 #[test]
 fn previews_stay_as_bright_as_pictures() {
     let context = context();
-    // As earlier versions showed them, and as today's do: lit from the side.
+    // As in earlier versions, and as today: lit from the side.
     let looks = [
         ("chair", NearField::Off, false),
         ("chair", NearField::Short, false),
@@ -78,15 +78,15 @@ fn previews_stay_as_bright_as_pictures() {
         let volume = builtin(name, Some(64)).expect("a volume");
         let mut home = auto::first_settings(&volume, &Histogram::of(&volume));
         home.shadows.near_field = near_field;
-        // As bright where no key shines as when the limits were measured: first looks have had less since.
+        // Ambient light as when the limits were measured: first looks have had less since.
         home.shading.ambient = 0.15;
         if near_field == NearField::Off {
-            // Light that is everywhere would hide how much brighter coarse shadows are.
+            // More ambient light would hide how much brighter coarse shadows are.
             home.shading.ambient = 0.05;
         }
         let most = if is_lit_aside {
             if name == "marschner-lobb" {
-                // From where that was measured.
+                // From the view of that measurement.
                 (home.camera.azimuth_deg, home.camera.elevation_deg) = (165.0, 40.0);
                 home.lights = key_and_fill(&home.camera, LightPlace::USUAL).to_vec();
             }
@@ -122,8 +122,8 @@ fn previews_stay_as_bright_as_pictures() {
     }
 }
 
-/// Faces that are seen at a steep angle are as even as with thin slabs, at any distance; with slabs as thick as two
-/// voxels they are not.
+/// Faces seen at a steep angle are as even as with thin slabs, at any distance; with slabs as thick as two voxels
+/// they are not.
 #[test]
 fn previews_of_flat_faces_show_no_stripes() {
     let context = context();
@@ -151,8 +151,8 @@ fn previews_of_flat_faces_show_no_stripes() {
     }
 }
 
-/// Axes of the built-in chair's front legs and back posts, where nothing hides them: in its own coordinates, in which its
-/// volume is a cube from −1 to 1.
+/// Axes of the built-in chair's front legs and back posts where nothing hides them, in its own coordinates, in which
+/// its volume is a cube from −1 to 1.
 const LEGS: [[DVec3; 2]; 4] = [
     [DVec3::new(-0.298, -0.274, -0.2), DVec3::new(-0.322, -0.306, -0.65)],
     [DVec3::new(0.298, -0.274, -0.2), DVec3::new(0.322, -0.306, -0.65)],
@@ -160,17 +160,17 @@ const LEGS: [[DVec3; 2]; 4] = [
     [DVec3::new(0.3, 0.293, -0.02), DVec3::new(0.3, 0.392, 0.42)],
 ];
 
-/// A quarter of the picture's width and height in a window of 1280 × 800 points.
+/// Size of a preview, a quarter of the picture's width and height in a window of 1280 × 800 points.
 const PREVIEW_SIZE: [u32; 2] = [235, 180];
 
-/// Root mean square of the stripes along a line in pixels, in shares of the mean luminance there: what a picture's
-/// luminance differs by from another's, less its blur by a Gaussian of 2.5 pixels.
+/// Root mean square of the stripes along a line in pixels, as a share of the mean luminance there: the difference
+/// between two pictures' luminance, less its blur by a Gaussian of 2.5 pixels.
 fn stripes(picture: &[[f32; 4]], thin: &[[f32; 4]], [from, to]: [DVec2; 2]) -> f64 {
     let luminance = |texels: &[[f32; 4]], x: usize, y: usize| {
         let [r, g, b, _] = texels[x + y * PREVIEW_SIZE[0] as usize].map(f64::from);
         0.2126 * r + 0.7152 * g + 0.0722 * b
     };
-    // Linear between the middles of pixels.
+    // Linear between pixel centres.
     let at = |texels: &[[f32; 4]], place: DVec2| {
         let corner = (place - 0.5).floor();
         let t = place - 0.5 - corner;
@@ -191,8 +191,8 @@ fn stripes(picture: &[[f32; 4]], thin: &[[f32; 4]], [from, to]: [DVec2; 2]) -> f
     (squares / off.len() as f64).sqrt() / mean
 }
 
-/// Thin parts look like twisted rope where each slab is sampled and shaded in its middle; pre-integrated slabs leave
-/// little of that, against slabs of a sixteenth of a voxel.
+/// Thin parts look like twisted rope where each slab is sampled and shaded at its middle; pre-integrated slabs leave
+/// little of that, compared with slabs of a sixteenth of a voxel.
 #[test]
 fn previews_of_thin_parts_show_no_stripes() {
     let context = context();
@@ -233,7 +233,8 @@ fn previews_of_thin_parts_show_no_stripes() {
     assert!(wrong.is_empty(), "{wrong:?}");
 }
 
-/// The same under lights that have a size, a sky and light that bounces, all of which previews follow more coarsely.
+/// Brightness of previews under area lights, a sky and multiple scattering, all of which previews compute more
+/// coarsely.
 #[test]
 fn previews_of_soft_light_stay_as_bright_as_pictures() {
     let context = context();

@@ -1,4 +1,4 @@
-//! Volumes whose voxels were averaged look like those that they stand for.
+//! Downsampled volumes look like the full-resolution ones.
 
 use chiaroscuro::data::{Histogram, Volume};
 use chiaroscuro::gpu::{Renderer, fitted, mean_luminance};
@@ -12,8 +12,8 @@ use crate::thresholds::{AVERAGED, AVERAGED_MEAN};
 
 const SIZE: [u32; 2] = [96, 72];
 
-/// The automatic opacity unit in the look of a test: it is what follows the number of voxels. Without rays nearby,
-/// which find that softer surfaces shade themselves more: by rays all the way the mean is 4 % less.
+/// Test look with the automatic opacity unit, which depends on the number of voxels. Without near-field rays, by
+/// which softer surfaces shade themselves more: with full rays the mean is 4 % less.
 fn look(volume: &Volume) -> Settings {
     let first = auto::first_settings(volume, &Histogram::of(volume));
     let mut settings = Settings { opacity_unit: first.opacity_unit, ..scenes::look() };
@@ -35,7 +35,7 @@ fn averaged_voxels_look_like_those_that_they_stand_for() {
     let mean = mean_luminance(&after.light) / mean_luminance(&before.light);
     println!("rmse {:.2}/255, mean {mean:.3}", far * 255.0);
     assert!(far < AVERAGED && (mean - 1.0).abs() < AVERAGED_MEAN, "{far} {mean}");
-    // An opacity unit that is taken for that of the file is noticed.
+    // Guards the comparison: an opacity unit of the file is detected.
     let wrong = picture(&half, &look(&whole));
     let mean = mean_luminance(&wrong.light) / mean_luminance(&before.light);
     println!("with a unit of the averaged voxels: mean {mean:.3}");

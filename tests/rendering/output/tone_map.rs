@@ -1,4 +1,4 @@
-//! Tone maps against their formulas, in double precision: from the linear light of pictures to what is shown of it.
+//! Tone maps against their formulas in double precision: from the linear light of pictures to the displayed values.
 
 use chiaroscuro::gpu::{Renderer, ShaderLibrary};
 use chiaroscuro::model::{Depth, ImageSpec, Settings, ToneMap};
@@ -11,9 +11,9 @@ use crate::thresholds::{EIGHT_BITS, TONE_MAP};
 
 const SIZE: [u32; 2] = [96, 80];
 
-/// The Khronos PBR neutral tone mapper's compression of what is brighter than 0.8, as it is published:
-/// <https://github.com/KhronosGroup/ToneMapping>. Two parts are left out on purpose: the offset for light that surfaces
-/// reflect whatever their colour, which volumes do not have, and the way to white, which would take away hue.
+/// The Khronos PBR neutral tone mapper's compression of values above 0.8, as it is published:
+/// <https://github.com/KhronosGroup/ToneMapping>. Two parts are left out on purpose: the offset for the Fresnel
+/// reflection of surfaces, which volumes do not have, and the desaturation towards white, which would take away hue.
 fn neutral(color: DVec3) -> DVec3 {
     let start_compression = 0.8;
     let peak = color.max_element();
@@ -25,12 +25,12 @@ fn neutral(color: DVec3) -> DVec3 {
     color * (new_peak / peak)
 }
 
-/// IEC 61966-2-1.
+/// sRGB transfer function of IEC 61966-2-1, from linear light.
 fn srgb(linear: f64) -> f64 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// What is shown of premultiplied light before nothing, with straight alpha.
+/// Displayed values of premultiplied light without background, with straight alpha.
 fn shown(light: [f32; 4], tone_map: ToneMap, exposure: f64) -> [f64; 4] {
     let [r, g, b, alpha] = light.map(f64::from);
     if alpha <= 0.0 {
@@ -44,7 +44,7 @@ fn shown(light: [f32; 4], tone_map: ToneMap, exposure: f64) -> [f64; 4] {
     [srgb(mapped.x), srgb(mapped.y), srgb(mapped.z), alpha]
 }
 
-/// How bright the lights of the pictures are: from hardly anything to far beyond white.
+/// Intensities of the lights in the pictures: from almost 0 to far beyond white.
 const INTENSITIES: [f64; 4] = [0.2, 1.0, 4.0, 200.0];
 
 fn look(intensity: f64, tone_map: ToneMap, exposure: f64) -> Settings {
@@ -56,7 +56,7 @@ fn look(intensity: f64, tone_map: ToneMap, exposure: f64) -> Settings {
     settings
 }
 
-/// Light of all the pictures, and what the renderer shows of it with 16 bits.
+/// Linear light of all the pictures, and the displayed values with 16 bits.
 fn sweep(mut renderer: Renderer, tone_map: ToneMap, exposure: f64) -> (Vec<[f32; 4]>, Vec<f64>) {
     let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
     let (mut light, mut found) = (Vec::new(), Vec::new());
@@ -86,7 +86,7 @@ fn tone_maps_are_their_formulas() {
     }
 }
 
-/// The comparison is worth what it compares: values before, at and far behind the shoulder.
+/// Guards the comparison: it covers values before, at and far behind the shoulder.
 #[test]
 fn all_of_the_curve_is_compared() {
     let (light, _) = sweep(Renderer::new(&context()).expect("a renderer"), ToneMap::Neutral, 1.0);
@@ -122,8 +122,8 @@ fn other_tone_maps_are_noticed() {
     }
 }
 
-/// Linear pictures are exposed as what is shown is, so that volume and background relate as they do on the screen; the
-/// light that is read back, by which balances are measured, is not.
+/// Linear pictures are exposed like displayed ones, so that volume and background relate as on the screen; the light
+/// that is read back, by which balances are measured, is not.
 #[test]
 fn linear_pictures_have_the_exposure_and_light_has_not() {
     let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));

@@ -1,4 +1,4 @@
-//! What unpacks to far more than was said, and what is nested without end.
+//! Decompression bombs, which expand to far more than stated, and endless nesting.
 
 use std::io::Write as _;
 
@@ -10,10 +10,10 @@ use super::Maker;
 use super::words::find;
 use crate::samples::{gzip, kept};
 
-/// Mebibytes that bombs unpack to.
+/// Size in MiB to which bombs expand.
 const LARGE: usize = 48;
 
-/// How deep nesting goes.
+/// Depth of nesting, in elements.
 const DEEP: usize = 100_000;
 
 pub(super) fn add(made: &mut Maker) {
@@ -22,12 +22,12 @@ pub(super) fn add(made: &mut Maker) {
     of_text(made, &zeros, &packed);
     let kept = kept();
     let of = |name: &str| kept.iter().find(|(kept, _)| *kept == name).expect("it is kept").1.clone();
-    // Packed as a whole.
+    // Compressed as a whole.
     for (name, start) in [("plain.nii", 352), ("density.mrc", 1024), ("array.npy", 128), ("packed.pvm", 0)] {
         let bytes = of(name);
         let bomb = [&bytes[..start], zeros.as_slice()].concat();
         made.add("packed zeros behind a header", &format!("{name}.gz"), &gzip(&bomb));
-        // A header that says that all of it, or much more, is voxels.
+        // A header that claims that all of it, or much more, is voxels.
         let mut large = bomb;
         match name {
             "plain.nii" => large[42..48].copy_from_slice(&[0, 4, 0, 4, 0, 4]),
@@ -46,7 +46,7 @@ pub(super) fn add(made: &mut Maker) {
     endless(made, &small);
 }
 
-/// Headers of text before packed numbers.
+/// Adds text headers before compressed voxels.
 fn of_text(made: &mut Maker, zeros: &[u8], packed: &[u8]) {
     let mut bzip2 = BzEncoder::new(Vec::new(), bzip2::Compression::best());
     bzip2.write_all(zeros).expect("it is in memory");
@@ -68,7 +68,7 @@ fn of_text(made: &mut Maker, zeros: &[u8], packed: &[u8]) {
         );
         made.add(format!("zlib of {sizes}"), "bomb.mha", &[header.as_bytes(), &zlib].concat());
         let last: Vec<u64> = sizes.split(' ').map(|n| n.parse::<u64>().expect("a number") - 1).collect();
-        // One block: how many, how long each, how long the last, how long it is packed.
+        // One block: number of blocks, size of each, size of the last, compressed size.
         let counts = [1u32, u32::MAX, 0, zlib.len() as u32].map(u32::to_le_bytes).concat();
         let header = format!(
             "<VTKFile type=\"ImageData\" byte_order=\"LittleEndian\" header_type=\"UInt32\" \
@@ -78,15 +78,15 @@ fn of_text(made: &mut Maker, zeros: &[u8], packed: &[u8]) {
             last[0], last[1], last[2]
         );
         made.add(format!("zlib of {sizes}"), "bomb.vti", &[header.as_bytes(), &counts, &zlib].concat());
-        // Very many blocks of nothing.
+        // Very many empty blocks.
         let counts = [u32::MAX, 1, 1].map(u32::to_le_bytes).concat();
         made.add(format!("blocks of {sizes}"), "blocks.vti", &[header.as_bytes(), &counts, &zlib].concat());
     }
 }
 
-/// The data set, or its pixels, unpack to much.
+/// Adds DICOM files whose data set, or whose pixels, expand to much.
 fn deflated_dicom(made: &mut Maker, bytes: &[u8], zeros: &[u8]) {
-    // The data set begins behind the group of the file, of which the length stands in its first element.
+    // The data set begins after the file's meta group, whose length is in its first element.
     let length = u32::from_le_bytes(bytes[140..144].try_into().expect("four bytes")) as usize;
     let start = &bytes[..144 + length];
     let deflated = |data: &[u8]| {
@@ -101,7 +101,7 @@ fn deflated_dicom(made: &mut Maker, bytes: &[u8], zeros: &[u8]) {
     made.add("a long text", "bomb.dcm", &[start, &deflated(&[element.as_slice(), zeros].concat())].concat());
 }
 
-/// Sequences in sequences.
+/// Adds DICOM files with sequences nested in sequences.
 fn nested_dicom(made: &mut Maker, bytes: &[u8]) {
     let length = u32::from_le_bytes(bytes[140..144].try_into().expect("four bytes")) as usize;
     let start = &bytes[..144 + length];
@@ -109,7 +109,7 @@ fn nested_dicom(made: &mut Maker, bytes: &[u8]) {
     let sequence =
         [&[0x08, 0, 0x40, 0x11, b'S', b'Q', 0, 0][..], &endless, &[0xfe, 0xff, 0, 0xe0], &endless].concat();
     made.add("sequences in sequences", "deep.dcm", &[start, &sequence.repeat(DEEP)].concat());
-    // With lengths that each hold the next.
+    // With lengths that each enclose the next.
     let mut nested = Vec::new();
     for depth in (0..2000u32).rev() {
         let inner = 20 * (1999 - depth);
@@ -130,7 +130,7 @@ fn nested_dicom(made: &mut Maker, bytes: &[u8]) {
     made.add("a sequence of very many items", "wide.dcm", &[start, &many].concat());
 }
 
-/// Elements in elements, entities of entities, and files that the text names.
+/// Adds XML files with nested elements, recursive entities, and external files.
 fn nested_xml(made: &mut Maker) {
     let kept = kept();
     let ome = &kept.iter().find(|(name, _)| *name == "ome.tif").expect("it is kept").1;
@@ -172,7 +172,7 @@ fn nested_xml(made: &mut Maker) {
                 format!("{doctype}{inner}").as_bytes(),
             );
         }
-        // The description of the first page, in its own length.
+        // The description of the first page, within its original length.
         let start = find(ome, b"<?xml").or_else(|| find(ome, b"<OME")).expect("it is OME");
         let mut changed = ome.clone();
         let text = format!("{doctype}<OME>&l9;&e;</OME>");
@@ -184,12 +184,12 @@ fn nested_xml(made: &mut Maker) {
     made.add("lists in lists", "odd.npy", &npy(&"(".repeat(60_000)));
 }
 
-/// A file of `NumPy` with a header.
+/// NumPy file with a header.
 fn npy(header: &str) -> Vec<u8> {
     [&b"\x93NUMPY\x01\x00"[..], &(header.len() as u16).to_le_bytes()[..], header.as_bytes()].concat()
 }
 
-/// An archive of one array, which is much longer, or much shorter, than its header says.
+/// Adds archives of one array that is much longer, or much shorter, than its header says.
 fn archive(made: &mut Maker, zeros: &[u8]) {
     for shape in ["(4, 4, 4)", "(512, 512, 512)", "(4096, 4096, 4096)"] {
         let header = npy(&format!("{{'descr': '|u1', 'fortran_order': False, 'shape': {shape}, }}\n"));
@@ -216,7 +216,7 @@ fn archive(made: &mut Maker, zeros: &[u8]) {
     }
 }
 
-/// Lists and numbers that do not end.
+/// Adds lists and numbers that do not end.
 fn endless(made: &mut Maker, data: &[u8]) {
     let fields = "key:=value\n".repeat(DEEP);
     let header = format!("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n{fields}\n");

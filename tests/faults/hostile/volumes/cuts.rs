@@ -1,9 +1,9 @@
-//! Files that end too early, that are called something else, and that are of nothing.
+//! Files that are truncated, under a wrong extension, or empty.
 
 use super::Maker;
 use crate::samples::kept;
 
-/// An ending of each format, and none.
+/// Extensions of the formats.
 const ENDINGS: [&str; 19] = [
     "nrrd", "nhdr", "nii", "nii.gz", "hdr", "dcm", "mha", "mhd", "tif", "png", "vti", "vtk", "mrc", "npy",
     "npz", "cube", "pvm", "mgz", "fits",
@@ -22,7 +22,7 @@ pub(super) fn add(made: &mut Maker) {
         }
         let twice = [bytes.as_slice(), bytes.as_slice()].concat();
         made.add("twice", name, &twice);
-        // As files are that were sent as text.
+        // With the line endings of a transfer as text.
         let as_text: Vec<u8> = bytes
             .iter()
             .flat_map(|&byte| if byte == b'\n' { vec![b'\r', b'\n'] } else { vec![byte] })

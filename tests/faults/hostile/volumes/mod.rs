@@ -1,8 +1,8 @@
-//! Odd and broken files of volumes in every format, made here and not kept: headers that lie, files that are cut, paths
-//! that lead out of the folder, what unpacks to more than was said, what is nested without end.
+//! Odd and broken volume files in every format, generated here: false headers, truncated files, paths that lead out
+//! of the folder, decompression bombs, endless nesting.
 //!
-//! Each is read in this process, which sees panics, time and memory; some of them, and in the long run all, by the
-//! program as well, of which it is seen what it opens.
+//! Each is read in this process, which observes panics, time and memory; some of them, and in the long run all, by
+//! the program as well, whose file accesses are traced.
 
 mod bombs;
 mod cuts;
@@ -20,36 +20,36 @@ use chiaroscuro::data::load::{LoadControl, LoadError, LoadErrorKind, LoadOptions
 use super::FORBIDDEN;
 use super::runner::{Trace, watch};
 
-/// Longest that a small file may take.
+/// Longest time for a small file.
 const PROMPT: Duration = Duration::from_secs(10);
 
-/// What a file that is refused may need beyond four times its own length.
+/// Memory that a refused file may need beyond four times its own length, in bytes.
 const MOST_BYTES: u64 = 64 << 20;
 
-/// Fewest files of this kind.
+/// Smallest number of files of this kind.
 const LEAST: usize = 400;
 
-/// A file to be opened.
+/// Test file, to be opened.
 struct Case {
-    /// What is wrong with it.
+    /// Description of the fault.
     what: String,
     path: PathBuf,
-    /// It leads to another folder, and may not be opened.
+    /// True if it leads to another folder, and must not be opened.
     is_forbidden: bool,
 }
 
-/// Makes files, each in a folder of its own.
+/// Writer of test files, each in a folder of its own.
 struct Maker {
     folder: PathBuf,
     cases: Vec<Case>,
 }
 
 impl Maker {
-    /// Adds a file.
+    /// Writes a file, and adds it to the cases.
     fn add(&mut self, what: impl Into<String>, name: &str, bytes: &[u8]) {
         let folder = self.folder.join(format!("{:04}", self.cases.len()));
         std::fs::create_dir(&folder).expect("a folder");
-        // What headers and descriptions are of.
+        // Data files of headers and descriptions.
         for (beside, length) in [("described.raw", 24), ("listed.raw", 120)] {
             std::fs::write(folder.join(beside), vec![7; length]).expect("room");
         }
@@ -70,7 +70,7 @@ fn all(root: &Path) -> Vec<Case> {
     made.cases
 }
 
-/// With a place for the files, and one from which nothing may be opened.
+/// Runs a check on all files, beside a folder from which nothing may be opened.
 fn with_all(check: impl FnOnce(&[Case])) {
     let folder = tempfile::tempdir().expect("a folder");
     let forbidden = folder.path().join(FORBIDDEN);
@@ -79,18 +79,18 @@ fn with_all(check: impl FnOnce(&[Case])) {
     check(&all(folder.path()));
 }
 
-/// The most memory that this process has had since it was last asked, where the system says it and no other test runs
-/// beside this one.
+/// Meter of this process's peak memory since the last reset, if the system reports it and no other test runs in this
+/// process.
 struct Peak(bool);
 
 impl Peak {
     fn find() -> Self {
-        // The runner that gives each test a process of its own says so.
+        // The runner that gives each test a process of its own sets this.
         let is_alone = std::env::var_os("NEXTEST").is_some();
         Self(is_alone && Self::reset() && Self::read().is_some())
     }
 
-    /// Forgets what was.
+    /// Resets the peak to the current memory.
     fn reset() -> bool {
         std::fs::write("/proc/self/clear_refs", "5").is_ok()
     }
@@ -101,7 +101,7 @@ impl Peak {
         line.trim().strip_suffix(" kB")?.parse::<u64>().ok().map(|kib| kib << 10)
     }
 
-    /// Runs something; how many bytes it needed at once, or 0 where that cannot be seen.
+    /// Runs a function and measures its peak memory in bytes, 0 if it cannot be measured.
     fn of<T>(&self, what: impl FnOnce() -> T) -> (T, u64) {
         if !self.0 {
             return (what(), 0);
@@ -113,7 +113,7 @@ impl Peak {
     }
 }
 
-/// What a refusal lacks.
+/// Deficiency of an error message, if it has one.
 fn flaw(error: &LoadError, path: &Path) -> Option<String> {
     let explanation = match error {
         LoadError::BadInput(explanation)
@@ -124,7 +124,7 @@ fn flaw(error: &LoadError, path: &Path) -> Option<String> {
     };
     let said = error.to_string();
     let folder = path.parent().unwrap_or(Path::new("")).to_string_lossy().into_owned();
-    // Of the file itself, or of one beside it.
+    // Names the file itself, or one beside it.
     let is_named = explanation.place.contains(&folder);
     let is_missing = said.contains("no such file");
     if !is_named || explanation.help.is_empty() {
@@ -138,7 +138,7 @@ fn flaw(error: &LoadError, path: &Path) -> Option<String> {
     }
 }
 
-/// All that is wrong with how a file is answered, and whether it was refused.
+/// Reads a file; returns all faults of the answer, and whether the file was refused.
 fn answered(case: &Case, peak: &Peak) -> (Vec<String>, bool) {
     let bytes = std::fs::metadata(&case.path).map_or(0, |data| data.len());
     let begin = Instant::now();
@@ -167,7 +167,7 @@ fn answered(case: &Case, peak: &Peak) -> (Vec<String>, bool) {
     (wrong.into_iter().map(|flaw| format!("{name}, {}: {flaw}", case.what)).collect(), is_refused)
 }
 
-/// Reads one in so many.
+/// Reads every n-th file in this process.
 fn read(every: usize) {
     with_all(|cases| {
         let peak = Peak::find();
@@ -197,14 +197,14 @@ fn all_odd_and_broken_volumes_are_refused_or_read() {
     read(1);
 }
 
-/// The program reads one in so many.
+/// Lets the program read every n-th file.
 fn run(every: usize) {
     with_all(|cases| {
         let trace = Trace::find();
         for case in cases.iter().step_by(every) {
             let Case { what, path, .. } = case;
             let ended = watch(path.parent().expect("a folder"), &["info".into(), path.into()], trace);
-            // 6 is for a file that is not there: one that a header names.
+            // Code 6 is allowed for a missing file that a header names.
             let is_missing = ended.said.contains("no such file");
             let is_right = matches!(ended.code, Some(0 | 3 | 5)) || ended.code == Some(6) && is_missing;
             assert!(is_right, "{what}: {}: {ended:?}", path.display());

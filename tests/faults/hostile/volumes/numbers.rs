@@ -1,13 +1,13 @@
-//! Formats whose headers are numbers: each is replaced by what cannot be.
+//! Formats with binary headers: each number is replaced by impossible values.
 
 use super::Maker;
 use super::words::find;
 use crate::samples::{gzip, kept};
 
-/// What stands where another number should.
+/// Values that replace a number in a header.
 const VALUES: [u32; 8] = [0, 1, 0x7fff, 0xffff, 0x7fff_ffff, 0x8000_0000, 0xffff_ffff, 0x7fc0_0000];
 
-/// The bytes of a file with a number at a place.
+/// Copy of a file with a number replaced.
 fn with(bytes: &[u8], at: usize, number: &[u8]) -> Vec<u8> {
     let mut changed = bytes.to_vec();
     if let Some(place) = changed.get_mut(at..at + number.len()) {
@@ -22,7 +22,7 @@ pub(super) fn add(made: &mut Maker) {
     nifti(made, &of("plain.nii"));
     mrc(made, &of("density.mrc"));
     mgh(made, &of("brain.mgh"));
-    // BigTIFF: where the directory is, how many entries it has, and what the first say.
+    // BigTIFF: offset of the directory, number of its entries, and its first entries.
     let big = of("tiles.tif");
     for at in (4..16).chain(big.len() - 200..big.len()).step_by(4) {
         for value in VALUES {
@@ -52,7 +52,7 @@ pub(super) fn add(made: &mut Maker) {
     pvm(made);
 }
 
-/// Dimensions, type, bits, distances, where voxels begin, scales, codes of places.
+/// Adds `NIfTI` files with hostile dimensions, type, bits, spacing, voxel offset, scale and orientation codes.
 fn nifti(made: &mut Maker, bytes: &[u8]) {
     for at in [0, 70, 72].into_iter().chain((40..56).step_by(2)) {
         for value in VALUES {
@@ -71,7 +71,7 @@ fn nifti(made: &mut Maker, bytes: &[u8]) {
     }
 }
 
-/// Every word that says something.
+/// Adds MRC files in which a used word of the header is hostile.
 fn mrc(made: &mut Maker, bytes: &[u8]) {
     for word in (1..20).chain([23, 24, 28, 50, 53, 54]) {
         for value in VALUES {
@@ -81,7 +81,7 @@ fn mrc(made: &mut Maker, bytes: &[u8]) {
     }
 }
 
-/// Counts, type, distances and places; big-endian.
+/// Adds MGH files with hostile dimensions, type, spacing and position; big-endian.
 fn mgh(made: &mut Maker, bytes: &[u8]) {
     for at in (0..28).chain(30..90).step_by(4) {
         for value in VALUES {
@@ -92,7 +92,8 @@ fn mgh(made: &mut Maker, bytes: &[u8]) {
     }
 }
 
-/// Counts and values of all entries, and where the next directory is: here again, nowhere, behind the end.
+/// Adds TIFF files with hostile counts and values of all entries, and a hostile offset of the next directory: itself,
+/// nowhere, beyond the end.
 fn tiff(made: &mut Maker, name: &str, bytes: &[u8]) {
     let is_big = bytes.starts_with(b"MM");
     let word = |at: usize| {
@@ -122,7 +123,7 @@ fn tiff(made: &mut Maker, name: &str, bytes: &[u8]) {
     }
 }
 
-/// Sizes, bits, samples, frames, and how long the pixels are.
+/// Adds DICOM files with hostile sizes, bits, samples, frames, or length of the pixel data.
 fn dicom(made: &mut Maker, name: &str, bytes: &[u8]) {
     let tags = [
         ("Rows", [0x28, 0, 0x10, 0]),
@@ -161,7 +162,7 @@ fn dicom(made: &mut Maker, name: &str, bytes: &[u8]) {
     }
 }
 
-/// Sizes, places and methods in the list at the end of an archive, and at its entries.
+/// Adds NPZ files with hostile sizes, offsets and methods in the central directory, and in the headers of entries.
 fn npz(made: &mut Maker, bytes: &[u8]) {
     for (mark, places) in [
         (&b"PK\x01\x02"[..], &[8, 10, 16, 20, 24, 28, 30, 42][..]),
@@ -178,7 +179,7 @@ fn npz(made: &mut Maker, bytes: &[u8]) {
     }
 }
 
-/// Lines of text before bytes.
+/// Adds PVM files with hostile text lines before the voxels.
 fn pvm(made: &mut Maker) {
     for lines in [
         "PVM\n0 3 4\n1\n",

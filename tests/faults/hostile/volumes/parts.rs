@@ -1,12 +1,12 @@
-//! Parts of files that are packed by themselves, strips of TIFF and blocks of VTK: what announces far more than it holds,
-//! and what holds far more than it announces.
+//! Separately compressed parts of files, strips of TIFF and blocks of VTK, that announce far more than they contain,
+//! or contain far more than they announce.
 
 use super::Maker;
 
-/// A size that is announced where there is next to nothing: more than any refusal may need.
+/// Announced size with almost no data behind it, in bytes: more than any refusal may need.
 const ANNOUNCED: u32 = 1 << 30;
 
-/// Bytes that a block of Zstandard has at most.
+/// Largest block of Zstandard, in bytes.
 const ZSTD_BLOCK: u32 = 128 << 10;
 
 pub(super) fn add(made: &mut Maker) {
@@ -14,11 +14,11 @@ pub(super) fn add(made: &mut Maker) {
     of_vtk(made);
 }
 
-/// A frame of Zstandard whose blocks repeat a byte; its window is of `2^(10 + exponent)` bytes.
+/// Zstandard frame whose blocks repeat a byte; its window is `2^(10 + exponent)` bytes.
 fn zstd(exponent: u8, blocks: u32, is_ended: bool) -> Vec<u8> {
     let mut frame = vec![0x28, 0xb5, 0x2f, 0xfd, 0, exponent << 3];
     for at in 1..=blocks {
-        // Size, the kind "the same byte again", and whether it is the last.
+        // Size, block type RLE, and the flag of the last block.
         let header = ZSTD_BLOCK << 3 | 1 << 1 | u32::from(is_ended && at == blocks);
         frame.extend(&header.to_le_bytes()[..3]);
         frame.push(7);
@@ -26,9 +26,9 @@ fn zstd(exponent: u8, blocks: u32, is_ended: bool) -> Vec<u8> {
     frame
 }
 
-/// A file of one page of bytes, with the places and lengths of its strips.
+/// TIFF file of one page of bytes, with the offsets and lengths of its strips.
 fn tiff([width, height]: [u32; 2], compression: u32, rows: u32, strips: &[[u32; 2]], data: &[u8]) -> Vec<u8> {
-    // Places count from the data on, which follow the header of 8 bytes.
+    // Offsets count from the data on, which follow the header of 8 bytes.
     let mut file = [b"II*\0".to_vec(), vec![0; 4], data.to_vec()].concat();
     let mut place = |numbers: Vec<u32>| {
         if let [one] = numbers[..] {
@@ -55,7 +55,7 @@ fn tiff([width, height]: [u32; 2], compression: u32, rows: u32, strips: &[[u32; 
     ];
     file.extend((entries.len() as u16).to_le_bytes());
     for [tag, count, value] in entries {
-        // All are of four bytes.
+        // All entries are four-byte integers.
         file.extend([(tag as u16).to_le_bytes(), 4u16.to_le_bytes()].concat());
         file.extend([count, value].map(u32::to_le_bytes).concat());
     }
@@ -75,7 +75,7 @@ fn of_tiff(made: &mut Maker) {
         ] {
             let frame = zstd(exponent, blocks, is_ended);
             for [width, height] in [[100, 100], [4096, 4096], [edge, edge]] {
-                // What fills a page of a gigabyte is a volume of a gigabyte.
+                // A frame that fills a page of a gigabyte is a valid volume of a gigabyte.
                 if u64::from(blocks) * u64::from(ZSTD_BLOCK) >= u64::from(ANNOUNCED) && width == edge {
                     continue;
                 }
@@ -85,10 +85,10 @@ fn of_tiff(made: &mut Maker) {
             }
         }
     }
-    // Of which the first does not fill the strip.
+    // The first of these frames does not fill the strip.
     let frames = zstd(0, 1, true).repeat(10_000);
     made.add("many frames", "frames.tif", &tiff([edge, edge], 50000, edge, &whole(&frames), &frames));
-    // What every method can announce of the bytes, before it turns out that they are broken.
+    // Sizes that every method can announce before its data turn out to be broken.
     let broken = [vec![0x80, 0x0b, 0x60, 0x50, 0x22], vec![0x55; 1 << 20]].concat();
     for compression in [1, 5, 8, 32773, 50000, 7] {
         for rows in [1, edge / 8, edge] {
@@ -98,7 +98,7 @@ fn of_tiff(made: &mut Maker) {
             made.add(what, "announced.tif", &tiff([edge, edge], compression, rows, &strips, &broken));
         }
     }
-    // Very many strips of the same bytes, each of a row of one pixel.
+    // Very many strips of the same bytes, each a row of one pixel.
     let same = vec![0x55; 128 << 10];
     for compression in [5, 8, 32773] {
         let strips = vec![[0, same.len() as u32]; 1 << 16];
@@ -117,7 +117,7 @@ fn of_vtk(made: &mut Maker) {
              <AppendedData encoding=\"{encoding}\">_"
         )
     };
-    // A run of a literal and a match that goes on as far as the bytes do; then one that leads before the beginning.
+    // A literal run and a match that goes on as far as the bytes do; then one that refers to before the beginning.
     let long = [vec![0x1f, 7, 1, 0], vec![255; 5 << 20], vec![0, 0]].concat();
     let astray = [vec![0x1f, 7, 9, 0], vec![255; 5 << 20], vec![0, 0]].concat();
     for (compressor, data) in [

@@ -1,4 +1,4 @@
-//! Headers that name files elsewhere: above their folder, absolute, over links, on other machines, devices.
+//! Headers that name files elsewhere: above their folder, absolute, through links, on other machines, devices.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use crate::samples::kept;
 pub(super) fn add(made: &mut Maker, forbidden: &Path) {
     let kept = kept();
     let of = |name: &str| kept.iter().find(|(kept, _)| *kept == name).expect("it is kept").1.clone();
-    // Beside the folder of what is forbidden, as names expect it.
+    // Beside the forbidden folder, as the names expect it.
     let folder = made.folder.join("places");
     std::fs::create_dir(&folder).expect("a folder");
     for (at, name) in names(&folder, forbidden).iter().enumerate() {
@@ -61,7 +61,7 @@ pub(super) fn add(made: &mut Maker, forbidden: &Path) {
         ] {
             add_to(made, &folder.join(format!("place_{at}.{ending}")), text.as_bytes(), name);
         }
-        // Only pages say where others lie: the description is exchanged for another that is no longer.
+        // Only pages name other files: the description is replaced by another of the same length or less.
         let ome = of("ome.tif");
         let xml = format!(
             "<?xml version=\"1.0\"?><OME><BinaryOnly MetadataFile=\"{escaped}\" UUID=\"urn:uuid:1\"/></OME>"
@@ -84,7 +84,7 @@ fn add_to(made: &mut Maker, path: &Path, bytes: &[u8], name: &str) {
     made.cases.push(Case { what, path: path.to_owned(), is_forbidden: true });
 }
 
-/// The other of two files, or the voxels of a description, is a link.
+/// Adds pairs of files of which the second, or the voxels of a description, is a link.
 #[cfg(unix)]
 fn pairs(made: &mut Maker, folder: &Path, forbidden: &Path) {
     let header: Vec<u8> = {
@@ -109,6 +109,6 @@ fn pairs(made: &mut Maker, folder: &Path, forbidden: &Path) {
     );
 }
 
-/// Links are for those who may make them.
+/// Only Unix systems let every user create links.
 #[cfg(not(unix))]
 fn pairs(_made: &mut Maker, _folder: &Path, _forbidden: &Path) {}

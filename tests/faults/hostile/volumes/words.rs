@@ -1,9 +1,9 @@
-//! Formats whose headers are text: each value is replaced by what cannot be, and each line is left out or there twice.
+//! Formats with text headers: each value is replaced by impossible ones, and each line is left out or repeated.
 
 use super::Maker;
 use crate::samples::kept;
 
-/// What stands where something else should.
+/// Values that replace a value in a header.
 const VALUES: [&str; 14] = [
     "",
     "-1",
@@ -21,7 +21,7 @@ const VALUES: [&str; 14] = [
     "\u{202e}\u{7}\u{0}",
 ];
 
-/// Where values are in a header: behind a mark, up to another.
+/// Position of a value in a header: after one mark, up to another.
 struct Field {
     file: &'static str,
     after: &'static str,
@@ -84,7 +84,7 @@ const FIELDS: [Field; 49] = [
     field("array.npy", "'descr': '", '\''),
 ];
 
-/// The place of some bytes among others.
+/// Index of some bytes within others.
 pub(super) fn find(bytes: &[u8], wanted: &[u8]) -> Option<usize> {
     bytes.windows(wanted.len()).position(|found| found == wanted)
 }
