@@ -1,4 +1,4 @@
-//! Turntables.
+//! Tests of the command `turntable`: animation files and folders of frames.
 
 use crate::program::Folder;
 

@@ -1,4 +1,4 @@
-//! Timings as JSON.
+//! Tests of the command `bench`: timings as JSON and as tables.
 
 use serde_json::Value;
 
@@ -65,7 +65,7 @@ fn loading_is_timed_stage_by_stage() {
     assert_eq!(keys(&load["load_ms"]), STAGES);
     let median = |stage: &str| load["load_ms"][stage]["median"].as_f64().expect("a number");
     assert!(STAGES.iter().all(|stage| median(stage) > 0.0), "{load}");
-    // Of one time each: what they take together is what loading takes, but for the first look, which is apart.
+    // Measured once each: their sum is the loading time, except for the first look, which is timed separately.
     let together = STAGES[1..].iter().map(|stage| median(stage)).sum::<f64>();
     assert!(together <= load["wall_ms"]["median"].as_f64().expect("a number"), "{load}");
     let table = folder.succeed(&format!("{loading} --only load"));

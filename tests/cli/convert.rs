@@ -1,18 +1,19 @@
-//! `convert`: what is written is what was read, in another format, in part, turned or in other numbers.
+//! Tests of the command `convert`: the written volume is the one that was read, in another format, cropped,
+//! reoriented or in another voxel type.
 
 use serde_json::Value;
 
 use crate::program::Folder;
 use crate::volumes::{attached, gzipped, header};
 
-/// Endings of all formats.
+/// File extensions of all output formats.
 const ENDINGS: [&str; 8] = ["nrrd", "mha", "nii", "nii.gz", "tif", "tiff", "npy", "vti"];
 
 fn facts(folder: &Folder, file: &str) -> Value {
     serde_json::from_str(&folder.succeed(&format!("info {file} --json"))).expect("valid JSON")
 }
 
-/// A volume of 4 x 3 x 2 numbers in a body, of which much is known.
+/// NRRD file of 4 × 3 × 2 voxels of a body, with much metadata.
 fn ct() -> Vec<u8> {
     let header = header(
         "sizes: 4 3 2\nspace: left-posterior-superior\nspace directions: (0,0.5,0) (-0.75,0,0) (0,0,2)\n\
@@ -87,7 +88,7 @@ fn parts_turns_and_numbers() {
     assert_eq!(ras["dims"], serde_json::json!([3, 4, 2]));
     assert_eq!(ras["spacing_mm"], serde_json::json!([0.75, 0.5, 2.0]));
     assert!([0, 4, 8].iter().all(|&at| number(&ras, at) > 0.0), "{ras}");
-    // Back again, and nothing is lost.
+    // Reoriented back, and nothing is lost.
     folder.succeed("convert ras.nrrd back.nrrd --orient PRS");
     folder.succeed("convert ct.nrrd once.nrrd --orient PRS");
     assert_eq!(folder.read("back.nrrd"), folder.read("once.nrrd"));
@@ -101,7 +102,7 @@ fn parts_turns_and_numbers() {
     folder.succeed("convert ct.nrrd small.tif --type uint8 --rescale -1000:1000");
     let small = facts(&folder, "small.tif");
     assert_eq!((&small["type"], &small["hints"]["padding"]), (&"uint8".into(), &0.0.into()));
-    // RAW, whose own type has another name here.
+    // RAW input, whose own voxel type has an option of another name here.
     folder.write("x.bin", [1u8, 0, 2, 0, 3, 0, 4, 1]);
     folder.succeed("convert x.bin x.npy --dims 2x2x1 --input-type uint16 --endian little --type float64");
     assert_eq!(facts(&folder, "x.npy")["range"], serde_json::json!([1.0, 260.0]));
@@ -139,11 +140,11 @@ fn what_cannot_be_written_is_refused() {
     folder.fail("convert theirs.mha out.nrrd", 3);
     folder.fail("convert ct.nrrd no/such/folder/out.nrrd", 6);
     folder.succeed("convert ct.nrrd theirs.mha --force");
-    // What the program has made it may make again.
+    // Files made by the program may be replaced by it.
     for ending in ENDINGS {
         folder.succeed(&format!("convert ct.nrrd o.{ending}"));
         if ending == "npy" {
-            // NumPy's arrays cannot say who made them.
+            // NumPy arrays cannot state which program wrote them.
             folder.fail("convert ct.nrrd o.npy", 2);
         } else {
             folder.succeed(&format!("convert ct.nrrd o.{ending}"));
@@ -151,7 +152,8 @@ fn what_cannot_be_written_is_refused() {
     }
 }
 
-/// Besides the input itself: data that a header names, and what comes along with a folder or a slice.
+/// Inputs are never replaced: besides the input file itself, data files that a header names, and the other files of a
+/// folder or a slice.
 #[test]
 fn what_is_read_is_never_replaced() {
     let folder = Folder::new();
@@ -170,7 +172,7 @@ fn what_is_read_is_never_replaced() {
         assert!(said.contains("would replace") && said.contains("which is read"), "{args}: {said}");
     }
     assert_eq!(folder.read("voxels.nii"), [7; 32]);
-    // What lies beside them is none of that.
+    // Files beside them that are not read may be replaced.
     folder.succeed("convert volume.nhdr beside.nii --force");
     folder.succeed("convert slices slices/all.npy");
     folder.succeed("convert slices slices/all.npy --force");

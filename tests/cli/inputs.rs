@@ -1,4 +1,4 @@
-//! Volumes that are refused.
+//! Tests of volumes that are refused as input.
 
 use std::fs;
 use std::process::Command;
@@ -15,7 +15,7 @@ fn files_that_are_not_there_or_no_files_are_io_errors() {
     for file in ["missing.raw", "missing.nrrd", "no/such/folder/x.nrrd"] {
         folder.refuse(file, &[6]);
     }
-    // A folder may be a volume, of slices.
+    // A folder may be a volume of slices.
     for file in ["directory.raw", "."] {
         folder.refuse(file, &[3]);
     }
@@ -36,12 +36,12 @@ fn files_that_may_not_be_read_are_io_errors() {
     folder.refuse("secret_8x8x8_uint8.raw", &[6]);
 }
 
-/// Files that open and look like any other, but that cannot be read; whoever asks, root included.
+/// Files that open and look like any other, but cannot be read by any user, root included.
 #[cfg(target_os = "linux")]
 #[test]
 fn files_whose_reading_fails_are_io_errors() {
     let folder = Folder::new();
-    // The memory of the program itself: nothing is where it begins.
+    // Memory of the program itself: the start of the address space is not mapped.
     let memory = "/proc/self/mem";
     assert!(fs::metadata(memory).expect("it is there").is_file() && fs::read(memory).is_err());
     for file in ["memory.nrrd", "memory.nhdr", "memory_8x8x8_uint8.raw.gz"] {
@@ -90,7 +90,7 @@ fn volumes_of_the_wrong_size_are_bad_input() {
 #[test]
 fn truncated_compressed_volumes_are_bad_input() {
     let folder = Folder::new();
-    // Noise, so that the compressed file is long enough to be cut.
+    // Noise, so that the compressed file is long enough to be truncated.
     let noise: Vec<u8> = (0..4096u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
     let whole = gzipped(&noise);
     folder.write("whole_16x16x16_uint8.raw.gz", &whole);
@@ -135,7 +135,7 @@ fn enormous_claims_are_refused_at_once() {
         folder.refuse(file, &[3, 5]);
     }
     folder.fail("info builtin:sphere:100000", 3);
-    // Behind a header without an end.
+    // Data behind a header that does not end.
     folder.write("endless.nrrd", [b"NRRD0004\n".to_vec(), vec![b'x'; 4 << 20]].concat());
     folder.refuse("endless.nrrd", &[3, 5]);
 }
@@ -151,7 +151,7 @@ fn spacings_that_are_no_lengths_are_bad_input() {
         folder.write(name, attached(&format!("sizes: 8 8 8\n{line}"), 512));
         folder.refuse(name, &[3]);
     }
-    // What cannot be is mended, and said.
+    // Impossible values are corrected, with a note.
     for (name, line) in [
         ("infinite.nrrd", "spacings: inf 1 1"),
         ("zero.nrrd", "spacings: 0 1 1"),
@@ -164,7 +164,7 @@ fn spacings_that_are_no_lengths_are_bad_input() {
         assert_eq!(facts["spacing_mm"], serde_json::json!([1.0, 1.0, 1.0]), "{name}");
         assert!(facts["remarks"].as_array().is_some_and(|remarks| !remarks.is_empty()), "{name}: {facts}");
     }
-    // NRRD writes nan for a spacing that nobody knows: 1 mm then.
+    // NRRD writes nan for an unknown spacing, which becomes 1 mm.
     folder.write("unknown.nrrd", attached("sizes: 8 8 8\nspacings: nan 1 2", 512));
     let facts: Value = serde_json::from_str(&folder.succeed("info unknown.nrrd --json")).expect("valid JSON");
     assert_eq!(facts["spacing_mm"], serde_json::json!([1.0, 1.0, 2.0]));

@@ -1,4 +1,4 @@
-//! Light: its attenuation as a volume and slices of it, and panoramas that scenes are lit by.
+//! Tests of light on the command line: attenuation as a volume and as slices, and environment maps.
 
 use image::{Rgb, Rgb32FImage};
 use serde_json::Value;
@@ -34,7 +34,7 @@ fn a_slice_of_light_is_a_picture_in_false_colours() {
     assert!(dark < 300 && bright > 500, "a ball has a lit and a dark side: {dark} … {bright}");
 }
 
-/// A grey sky over a brown ground, and a lamp at the right.
+/// Environment map with a grey sky over brown ground, and a lamp on the right.
 fn panorama() -> Rgb32FImage {
     Rgb32FImage::from_fn(128, 64, |x, y| match (x, y) {
         (94..=97, 20..=23) => Rgb([900.0, 800.0, 500.0]),
@@ -61,7 +61,7 @@ fn a_panorama_lights_the_scene_by_its_gradient_and_its_brightest_light() {
     assert_eq!(lights[0]["name"], "Surroundings");
     assert!(number("/lights/0/color/0") > number("/lights/0/color/2"), "a warm lamp: {settings}");
     assert!(lights[1..].iter().all(|light| light["on"] == false), "others are switched off");
-    // The picture is all that is needed to make it again.
+    // The picture alone is enough to render it again.
     std::fs::remove_file(folder.path("room.hdr")).expect("it is ours");
     folder.succeed("replay out.png -o again.png");
     assert!(folder.read("out.png") == folder.read("again.png"), "the same picture");

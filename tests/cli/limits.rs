@@ -1,4 +1,5 @@
-//! Small files that would be large in memory: looks and pictures that claim, swell or repeat.
+//! Tests of memory limits against small hostile files: looks and pictures with false sizes, compressed bombs or
+//! repetition.
 
 use std::fs;
 use std::process::{Command, Stdio};
@@ -10,23 +11,24 @@ use chiaroscuro::model::{Depth, ImageSpec};
 use crate::program::{Folder, PATIENCE};
 use crate::volumes::attached;
 
-/// What a hostile file may take beyond the same run without it. What these took before they were bounded: 5.5 GB.
+/// Memory that a hostile file may take beyond the same run without it, in MiB. Before limits were added, these took
+/// 5.5 GB.
 const MOST_MEBIBYTES: u64 = 200;
 
-/// As long as a hostile file may hold up a run, on machines that do something else as well; 51 s before.
+/// Time by which a hostile file may delay a run, on machines that are busy as well; 51 s before limits were added.
 const MOST_TIME: Duration = Duration::from_secs(10);
 
-/// What a run came to.
+/// Outcome and cost of a run.
 #[derive(Debug)]
 struct Cost {
     code: Option<i32>,
     stderr: String,
     took: Duration,
-    /// The most memory that it had (`VmHWM`), in MiB, as of shortly before its end.
+    /// Peak memory (`VmHWM`) shortly before the end of the run, in MiB.
     peak: u64,
 }
 
-/// Runs the program and watches its memory, where the system shows it.
+/// Runs the program and watches its memory, where the system reports it.
 fn watch(folder: &Folder, args: &str) -> Cost {
     let stderr = tempfile::NamedTempFile::new().expect("a temporary file");
     let start = Instant::now();
@@ -59,7 +61,7 @@ fn watch(folder: &Folder, args: &str) -> Cost {
     Cost { code, stderr, took: start.elapsed(), peak }
 }
 
-/// Runs a command and compares what it takes with a run that does without its file.
+/// Runs a command and compares its cost with that of a run without its file.
 fn assert_cheap(folder: &Folder, args: &str, base: &Cost, code: i32, said: &str) {
     let cost = watch(folder, args);
     assert_eq!(cost.code, Some(code), "`{args}`: {cost:?}");
@@ -69,7 +71,7 @@ fn assert_cheap(folder: &Folder, args: &str, base: &Cost, code: i32, said: &str)
     assert!(cost.took <= base.took + MOST_TIME, "`{args}`: {:?}, {:?} without", cost.took, base.took);
 }
 
-/// A PNG of one pixel with a compressed text.
+/// Writes a PNG of one pixel with a compressed text chunk.
 fn png_with(text: &str, path: &std::path::Path) {
     let mut info = png::Info::with_size(1, 1);
     let mut chunk = png::text_metadata::ITXtChunk::new("chiaroscuro", text);
@@ -135,7 +137,7 @@ fn pictures_are_measured_before_they_are_decoded() {
     let base = watch(&folder, "replay good.png");
     assert_eq!(base.code, Some(0), "{base:?}");
 
-    // As the header says, 32768 × 32768 pixels; the record says 8 × 8.
+    // The header claims 32768 × 32768 pixels; the record says 8 × 8.
     let mut claims = folder.read("good.png");
     for at in [16, 20] {
         claims[at..at + 4].copy_from_slice(&32_768u32.to_be_bytes());
@@ -146,7 +148,7 @@ fn pictures_are_measured_before_they_are_decoded() {
     folder.write("claims.png", claims);
     assert_cheap(&folder, "replay claims.png", &base, 3, "[32768, 32768] pixels and not [8, 8]");
 
-    // As many columns as a header can say.
+    // As many columns as a header can state.
     let shot = ImageSpec { depth: Depth::Linear, ..ImageSpec::new([2, 2]) };
     let record = read_record(&folder.path("good.png")).expect("a picture").expect("a record");
     let mut rows = Some(Rows::Floats(vec![0.0; 16]));
@@ -154,7 +156,7 @@ fn pictures_are_measured_before_they_are_decoded() {
     write_picture(&folder.path("claims.exr"), &shot, Some(&record), &mut next).expect("written");
     let mut claims = folder.read("claims.exr");
     for name in [&b"dataWindow\0box2i\0"[..], b"displayWindow\0box2i\0"] {
-        // A length of four bytes, then the least and the greatest column and row.
+        // A length of four bytes, then the smallest and the largest column and row.
         let at = claims.windows(name.len()).position(|bytes| bytes == name).expect("it is there")
             + name.len()
             + 12;
@@ -174,7 +176,7 @@ fn data_that_no_number_can_span_and_unlike_spacings_are_refused_in_words() {
     let said = folder.refuse("far.nrrd", &[3]);
     assert!(said.contains("from -1.5e308 to 1.5e308"), "{said}");
     folder.write("flat.nrrd", attached("sizes: 4 4 4\nspacings: 1e-9 1e9 1", 64));
-    // Distances that cannot be meant together are mended, and said.
+    // Spacings that are implausible together are corrected, with a note.
     let said = folder.succeed("info flat.nrrd");
     assert!(said.contains("1 × 1 × 1 mm") && said.contains("note"), "{said}");
     folder.write("x_4x4x4_uint8.raw", [0; 64]);
@@ -182,8 +184,8 @@ fn data_that_no_number_can_span_and_unlike_spacings_are_refused_in_words() {
     assert!(said.contains("--spacing"), "{said}");
 }
 
-/// Drivers end the program where they get no memory, and the pool of threads where it gets no threads; with more cores
-/// both need more. Other systems have no such limit.
+/// Under a limit on the address space, drivers abort the program if they get no memory, and the thread pool if it
+/// gets no threads; with more cores both need more. Other systems have no such limit.
 #[cfg(target_os = "linux")]
 #[test]
 fn too_few_addresses_are_an_error_and_no_crash() {
@@ -209,7 +211,7 @@ fn too_few_addresses_are_an_error_and_no_crash() {
 #[test]
 fn files_that_unfold_to_a_gibibyte_are_spoken_of_and_thinned_for_a_glance() {
     use std::io::Write as _;
-    // Zeros as 512 members of gzip, of 2 MiB each.
+    // Zeros as 512 gzip members of 2 MiB each.
     let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
     encoder.write_all(&vec![0; 2 << 20]).expect("memory");
     let member = encoder.finish().expect("memory");
@@ -224,7 +226,7 @@ fn files_that_unfold_to_a_gibibyte_are_spoken_of_and_thinned_for_a_glance() {
     }
     assert!(outcome.stdout.contains("342 × 342 × 342, uint8"), "{outcome:?}");
     assert!(outcome.stdout.contains("1024 × 1024 × 1024"), "{outcome:?}");
-    // Whoever says how much is read knows what it is.
+    // A user who states how much is read knows the size.
     let outcome = folder.run("info zeros.nrrd --every 64");
     assert_eq!(outcome.code, Some(0), "{outcome:?}");
     assert!(!outcome.stderr.contains("unfold"), "{outcome:?}");

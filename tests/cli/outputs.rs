@@ -1,4 +1,4 @@
-//! Where results go, what they may replace, and what is left when the program is told to end.
+//! Tests of output files: targets, replacing existing files, and cleaning up when the program is terminated.
 
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -39,7 +39,7 @@ fn files_of_others_are_replaced_only_by_force() {
     folder.succeed("turntable builtin:sphere:16 --size 16x12 --frames 2 -o turn --force");
     assert_eq!(folder.read("turn/notes.txt"), b"mine");
     assert_ne!(folder.read("turn/0001.png"), theirs);
-    // An empty one holds nothing.
+    // An empty file contains nothing to lose.
     folder.write("e.png", "");
     folder.succeed(&format!("{RENDER} -o e.png"));
 }
@@ -48,7 +48,7 @@ fn files_of_others_are_replaced_only_by_force() {
 fn files_of_the_program_say_so_and_are_replaced() {
     let folder = Folder::new();
     let turn = "turntable builtin:sphere:16 --size 16x12 --frames 2";
-    // Twice: what the first has made, the second may replace.
+    // Twice: files written by the first run may be replaced by the second.
     for _ in 0..2 {
         folder.succeed(&format!("{RENDER} -o p.png --report r.json"));
         folder.succeed(&format!("{RENDER} -o p.exr"));
@@ -69,7 +69,7 @@ fn files_of_the_program_say_so_and_are_replaced() {
     folder.succeed("info l.nrrd");
 }
 
-/// A command whose standard output is not text.
+/// Runs a command whose standard output is binary, and returns the bytes.
 fn standard_output(folder: &Folder, args: &str) -> Vec<u8> {
     let output = Command::new(env!("CARGO_BIN_EXE_chiaroscuro"))
         .args(args.split_whitespace())
@@ -97,13 +97,13 @@ fn a_dash_is_standard_output() {
     assert_eq!(folder.names(), ["l.nrrd", "p.png"]);
 }
 
-/// A turn that is being written: so long that nobody waits for its end.
+/// Starts an animation export that is too long to wait for.
 fn long_turn(folder: &Folder) -> std::process::Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_chiaroscuro"));
     begin_turn(&mut command, folder)
 }
 
-/// The same with a command that ends in the program's name, if it has arguments.
+/// Starts the long animation export by a command that takes the program as its last argument, if it has arguments.
 fn begin_turn(command: &mut Command, folder: &Folder) -> std::process::Child {
     let child = command
         .args("turntable builtin:sphere:16 --size 640x480 --frames 3600 -o t.png".split_whitespace())
@@ -130,14 +130,14 @@ fn what_is_half_written_goes_with_its_writer_or_with_the_next() {
         let sent = Command::new("kill").args(["-s", signal, &child.id().to_string()]).status();
         assert!(sent.expect("kill is there").success());
     };
-    // As shells have it: 128 and the number of the signal.
+    // Exit codes as in shells: 128 plus the number of the signal.
     for (signal, code) in [("INT", 130), ("TERM", 143), ("HUP", 129)] {
         let mut child = long_turn(&folder);
         send(signal, &child);
         assert_eq!(child.wait().expect("it ends").code(), Some(code), "{signal}");
         assert_eq!(folder.names(), Vec::<String>::new(), "{signal}");
     }
-    // What was started with a signal ignored (`nohup`) goes on where that is known.
+    // A program started with a signal ignored (`nohup`) continues, where the system reports that.
     #[cfg(target_os = "linux")]
     {
         let ignoring = ["-c", "trap '' HUP; exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_chiaroscuro")];
@@ -149,7 +149,7 @@ fn what_is_half_written_goes_with_its_writer_or_with_the_next() {
         assert_eq!(child.wait().expect("it ends").code(), Some(143));
     }
     let mut child = long_turn(&folder);
-    // One that is alive stays while another writes beside it.
+    // The temporary file of a running process stays while another process writes beside it.
     folder.succeed(&format!("{RENDER} -o p.png"));
     assert_eq!(folder.names().len(), 2);
     child.kill().expect("it can be killed");
@@ -180,12 +180,12 @@ fn refused_memory_and_lost_shaders_are_said() {
     folder.succeed(&format!("{RENDER} -o p.png --fault slow:1"));
 }
 
-/// Drivers look for a desktop, in a folder that containers and clusters do not name.
+/// Drivers look for a desktop session, in a folder that containers and clusters do not set.
 #[cfg(target_os = "linux")]
 #[test]
 fn good_runs_print_no_errors() {
     let folder = Folder::new();
-    // As good as not there: only absolute paths count.
+    // Like a missing variable: only absolute paths count.
     for named in ["", "run"] {
         let outcome = folder.run_with(&format!("{RENDER} -o p.png --force"), &[("XDG_RUNTIME_DIR", named)]);
         assert_eq!(outcome.code, Some(0), "{outcome:?}");

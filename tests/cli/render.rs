@@ -1,4 +1,4 @@
-//! Pictures of volumes, their reports, and the settings that they are made with.
+//! Tests of the command `render`: pictures, their reports, and the settings that they are made with.
 
 use serde_json::Value;
 
@@ -38,7 +38,7 @@ fn a_picture_and_its_report_are_written() {
     assert!(report["adapter"].as_str().is_some_and(|name| !name.is_empty()));
     assert_eq!(report["image_size"], serde_json::json!([64, 48]));
     assert_eq!(report["volume_dims"], serde_json::json!([24, 24, 24]));
-    // The key light casts shadows, so its volume was made for the picture; the fill light casts none.
+    // The key light casts shadows, so its volume was filled for the picture; the fill light casts none.
     assert_eq!(report["light_rebuilds"][0], 1, "{}", report["light_rebuilds"]);
     assert!(report["slabs"].as_u64().is_some_and(|slabs| slabs >= 24), "{}", report["slabs"]);
     assert!(report["peak_gpu_bytes"].as_u64().is_some_and(|bytes| bytes > 2 * 24 * 24 * 24));
@@ -55,7 +55,7 @@ fn blocks_of_voxels_are_averaged_when_that_is_asked_for() {
     assert_eq!(report["volume_file_dims"], serde_json::json!([48, 48, 48]));
     let replayed = folder.run("replay out.png --check --reduce 1");
     assert_eq!(replayed.code, Some(3), "it is of other voxels: {replayed:?}");
-    // The picture says how much of the volume it shows.
+    // The picture records which portion of the volume it shows.
     folder.succeed("replay out.png --check");
     folder.fail("render builtin:sphere:48 --reduce 0 -o none.png", 2);
 }
@@ -82,7 +82,7 @@ fn a_part_of_a_file_is_shown_and_found_again() {
 #[test]
 fn volumes_beyond_the_adapter_are_shown_with_fewer_voxels() {
     let folder = Folder::new();
-    // Longer than any adapter's axes.
+    // Longer than the largest texture of any adapter.
     folder.write("long_20000x3x3_uint8.raw", vec![200; 20000 * 9]);
     let outcome = folder.run("render long_20000x3x3_uint8.raw -o out.png --size 64x48 --report r.json");
     assert_eq!(outcome.code, Some(0), "{outcome:?}");
@@ -91,7 +91,7 @@ fn volumes_beyond_the_adapter_are_shown_with_fewer_voxels() {
     assert_eq!(report["volume_file_dims"], serde_json::json!([20000, 3, 3]));
     assert!(report["volume_dims"][0].as_u64().is_some_and(|n| n < 20000), "{}", report["volume_dims"]);
     assert_eq!(report["volume_dims"][1], 3, "the other axes are short enough");
-    // Nobody mistakes it for the whole.
+    // A benchmark of it is refused, because it would not be of the whole volume.
     let bench = "bench --volume long_20000x3x3_uint8.raw --only orbit --frames 1 --size 16x16";
     let said = folder.fail(bench, 2);
     assert!(said.contains("full resolution"), "{said}");
@@ -177,7 +177,7 @@ fn raw_files_say_their_format_in_the_name_or_in_options() {
     let render = |file: &str, out: &str| {
         folder.succeed(&format!("render {file} -o {out} --size 32x24"));
         assert_shows_something(&folder.path(out), [32, 24]);
-        // The pixels: beside them, a picture says of which file it is.
+        // Pixels only: the metadata of a picture name its volume file.
         image::open(folder.path(out)).expect("a picture").to_rgba8().into_raw()
     };
     let named = render("x_8x8x8_uint8.raw", "named.png");
@@ -225,7 +225,7 @@ fn a_volume_is_shown_as_the_kind_of_data_that_is_named() {
     folder.fail("render builtin:sphere:24 -o no.png --as something", 2);
 }
 
-/// The sphere alone, which floats above a plate.
+/// The sphere alone, without the plate below it, over which it floats.
 #[test]
 fn the_floor_lies_under_what_is_shown() {
     let folder = Folder::new();
@@ -238,12 +238,13 @@ fn the_floor_lies_under_what_is_shown() {
     folder.write("sphere.json", format!(r#"{{"transfer": {{"points": {points}}}}}"#));
     let [under_plate, under_sphere] = ["", "--preset sphere.json"].map(height);
     assert!(under_plate < -0.6, "{under_plate}");
-    // A third below its middle at a quarter, and the voxels have twelve to a scene unit.
+    // The sphere's lowest point is a third below its centre, at a quarter; there are twelve voxels to a scene unit.
     assert!((under_sphere + 1.0 / 12.0).abs() < 0.1, "{under_sphere}");
     assert_eq!(height("--preset sphere.json --set floor.height=-0.9"), -0.9);
 }
 
-/// The report has the settings: a volume that is stood up is lit and framed as it stands, however that is said.
+/// Setting the up axis turns the object: the report shows that it is lit and framed in that orientation, whichever
+/// option set it.
 #[test]
 fn whoever_names_what_is_up_stands_the_object_up() {
     let folder = Folder::new();
@@ -266,7 +267,8 @@ fn whoever_names_what_is_up_stands_the_object_up() {
     assert!(folder.fail(&format!("{render} --set camera.up=sideways"), 2).contains("camera.up"));
 }
 
-/// Whether a picture without its background shows anything, and whether the program says that it does not.
+/// Renders a picture without its background; returns whether it shows anything, and whether the program warns that it
+/// does not.
 fn shown_and_warned(folder: &Folder, args: &str) -> (bool, bool) {
     let done = folder.run(&format!("render {args} --set floor.on=false -o out.png --transparent"));
     assert_eq!(done.code, Some(0), "{done:?}");
@@ -274,7 +276,7 @@ fn shown_and_warned(folder: &Folder, args: &str) -> (bool, bool) {
     (shows, done.stderr.contains("nothing of the volume is visible"))
 }
 
-/// 20 single voxels of 64³ are smaller than what a first look is made for.
+/// 20 single voxels of 64³ are smaller than a first look is made for.
 #[test]
 fn a_picture_that_shows_nothing_is_not_written_without_a_word() {
     let folder = Folder::new();
@@ -292,7 +294,7 @@ fn a_picture_that_shows_nothing_is_not_written_without_a_word() {
             assert!(shows != warned, "{file} at {size}: shows {shows}, warned {warned}");
         }
     }
-    // Nothing is in the picture that the camera does not look at, and nothing is transparent.
+    // The camera looks past the volume, so the picture is empty; or everything is transparent.
     let away = "builtin:sphere:16 --size 64x48 --set camera.target=[90,0,0]";
     assert_eq!(shown_and_warned(&folder, away), (false, true));
     let sphere = "builtin:sphere:16 --size 64x48";

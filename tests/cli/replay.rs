@@ -1,4 +1,4 @@
-//! Pictures that are made again from what they or their reports say.
+//! Tests of the command `replay`: pictures rendered again from their own metadata or from a report.
 
 use chiaroscuro::export::{ExportError, export_png, read_picture, read_record, write_picture};
 use chiaroscuro::model::{Depth, ImageSpec};
@@ -13,7 +13,7 @@ fn settings_of_a_report_restore_the_picture() {
         "render builtin:chair:24 -o first.png --size 64x48 --report first.json --set camera.azimuth_deg=77.7 \
          --set shadows.strength=0.7 --set sampling.kernel={\"gaussian\":{\"sigma\":0.55}}",
     );
-    // As text: reading a number and writing it again may already change its last digit.
+    // Compared as text: parsing and formatting a number may change its last digit.
     let settings = |name: &str| {
         let text = String::from_utf8(folder.read(name)).expect("JSON is UTF-8");
         let (_, after) = text.split_once("\"settings\": ").expect("the report has the settings");
@@ -45,7 +45,7 @@ fn pictures_can_be_made_again_from_themselves() {
     folder.succeed("replay shot.png -o again.png");
     assert!(folder.read("again.png") == folder.read("shot.png"), "all bytes, the record included");
 
-    // Another look is noticed, and only a failure when that was asked for.
+    // A different look is detected, and is an error only with `--check`.
     let text = read_record(&folder.path("shot.png")).expect("a picture").expect("a record");
     let changed = text.replace("\"gain\": 1.3", "\"gain\": 0.4");
     assert_ne!(changed, text);
@@ -57,14 +57,14 @@ fn pictures_can_be_made_again_from_themselves() {
     assert!(outcome.stderr.contains("RMSE"), "{outcome:?}");
     assert!(!outcome.stderr.contains("earlier version"), "{outcome:?}");
 
-    // What an earlier version made need not be the same, and is said to be of one.
+    // A picture of an earlier version may differ, which the message states.
     let earlier = changed.replace("\"schema\": 2", "\"schema\": 1");
     assert_ne!(earlier, changed);
     export_png([48, 36], &pixels, true, Some(&earlier), &folder.path("earlier.png")).expect("written");
     let said = folder.succeed("replay earlier.png");
     assert!(said.contains("made by an earlier version") && said.contains("RMSE"), "{said}");
 
-    // Another volume, a moved one, and pictures that carry nothing.
+    // Another volume, a moved one, and pictures without metadata.
     folder.write(
         "y_8x8x8_uint8.raw",
         vec![7; 512].iter().zip(0..).map(|(a, b): (&u8, i32)| a ^ b as u8).collect::<Vec<_>>(),
@@ -105,7 +105,7 @@ fn fine_pictures_can_be_made_again_from_themselves() {
     assert_eq!(deep.color(), image::ColorType::Rgb16);
     let words = deep.to_rgb16().into_raw();
     assert!(words.iter().filter(|&&word| word % 257 != 0).count() > words.len() / 4, "more than bytes");
-    // Another look is noticed in these, too.
+    // A different look is detected in these formats as well.
     let text = read_record(&folder.path("light.exr")).expect("a picture").expect("a record");
     let (size, rows) = read_picture(&folder.path("light.exr")).expect("a picture");
     let changed = text.replace("\"gain\": 1.0", "\"gain\": 0.4");
@@ -115,7 +115,7 @@ fn fine_pictures_can_be_made_again_from_themselves() {
     let mut next = || Ok::<_, ExportError>(rows.take());
     write_picture(&folder.path("changed.exr"), &shot, Some(&changed), &mut next).expect("written");
     assert_eq!(folder.run("replay changed.exr --check").code, Some(1));
-    // A look can be taken from any of them.
+    // A look can be loaded from any of them.
     folder.succeed("render builtin:chair:16 -o from.png --size 48x36 --session light.exr");
     export_png([1, 1], &[0; 4], false, None, &folder.path("bare.png")).expect("written");
     let outcome = folder.run("render builtin:chair:16 -o x.png --session bare.png");
@@ -129,7 +129,7 @@ fn fine_pictures_can_be_made_again_from_themselves() {
 #[test]
 fn pictures_may_be_larger_than_textures() {
     let folder = Folder::new();
-    // Wider than adapters draw at once (16384 here and on most).
+    // Wider than the largest texture of adapters (16384 here and on most).
     let said = folder.succeed("render builtin:chair:16 -o wide.png --size 20000x3 --set sampling.slab=4");
     assert!(said.contains("wide.png"));
     let wide = image::open(folder.path("wide.png")).expect("a picture").to_rgb8();
@@ -150,7 +150,7 @@ fn volumes_outside_the_pictures_folder_are_opened_only_when_the_user_says_so() {
         let said = folder.succeed(&format!("replay pictures/shot.png --check {trust}"));
         assert!(said.contains("identical"), "{trust}: {said}");
     }
-    // Nothing makes it look for what is no file at all.
+    // Names that are no regular file are never looked up.
     let text = read_record(&folder.path("pictures/shot.png")).expect("a picture").expect("a record");
     let record: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     for source in ["\\\\host\\share\\x.nrrd", "//host/share/x.nrrd", "/dev/zero", "nul.raw", "http://host/x"]

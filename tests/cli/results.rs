@@ -1,4 +1,4 @@
-//! Results that are not written, and what is told beside those that are.
+//! Tests of results that cannot be written, and of messages beside results.
 
 use std::fs;
 
@@ -66,7 +66,7 @@ fn what_is_read_is_never_replaced() {
         ("render builtin:sphere:16 -o a.png --report a.png", 2),
         ("turntable builtin:sphere:16 --session s.png -o s.png --frames 2 --size 16x16", 2),
         ("replay s.png -o s.png", 2),
-        // Nor do pictures get names of other things.
+        // Pictures are not written under extensions of other formats.
         ("render builtin:sphere:16 --size 16x16 -o v.nrrd", 6),
         ("render builtin:sphere:16 --size 16x16 -o s.json", 6),
         ("compare builtin:sphere:16 --size 16x16 -o v.nrrd", 6),
@@ -94,7 +94,7 @@ fn only_files_are_replaced() {
     assert!(kind.is_socket(), "it is what it was");
 }
 
-/// Exit code and standard error of a command that a shell starts, with `$B` for the program.
+/// Exit code and standard error of a shell script, in which `$B` is the program.
 #[cfg(unix)]
 fn shell(folder: &Folder, script: &str) -> (Option<i32>, String) {
     let output = std::process::Command::new("sh")
@@ -126,7 +126,7 @@ fn a_standard_output_that_is_full_or_closed_is_an_error() {
             assert_eq!(code, Some(6), "{args} {to}: {said}");
             assert!(said.contains("could not write to standard output"), "{args} {to}: {said}");
         }
-        // What is thrown away is no error, however that was opened.
+        // Output to the null device is no error, however it was opened.
         for to in [">/dev/null", "<>/dev/null 1>&0"] {
             let (code, said) = shell(&folder, &format!("$B {args} {to}"));
             assert_eq!(code, Some(0), "{args} {to}: {said}");
@@ -193,7 +193,7 @@ fn names_from_files_cannot_talk_to_the_terminal() {
     assert!(!outcome.stderr.contains('\u{1b}') && !outcome.stderr.contains('\u{7}'), "{outcome:?}");
 }
 
-/// On other systems the drivers cannot be hidden from a program.
+/// Only on Linux can the drivers be hidden from a program.
 #[cfg(target_os = "linux")]
 #[test]
 fn without_an_adapter_the_message_says_what_to_install() {
@@ -211,7 +211,7 @@ fn without_an_adapter_the_message_says_what_to_install() {
         let said = folder.fail_with(args, 4, &hidden);
         assert!(said.contains("adapter") && said.contains("install"), "`{args}`: {said}");
     }
-    // What needs no adapter works all the same.
+    // Commands that need no adapter still work.
     assert_eq!(folder.run_with("info builtin:sphere:16", &hidden).code, Some(0));
 }
 

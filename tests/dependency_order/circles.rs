@@ -1,7 +1,7 @@
-//! No two modules side by side import each other, be it over others: who reads one need not read all.
+//! Check for import cycles between sibling modules, including indirect ones: a reader of one need not read all.
 //!
-//! A folder's `mod.rs` is no part of this: it is the folder, and its files are parts of it. What a `mod.rs` hands on
-//! is followed to where it is.
+//! A folder's `mod.rs` is exempt: it is the folder, and its files are parts of it. Re-exports of a `mod.rs` are
+//! resolved to the module that defines the name.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,13 +9,13 @@ use crate::paths::{Path, imports, paths, without_tests};
 use crate::sources::{Source, files};
 use crate::tokens::tokens;
 
-/// For each module of a folder the others that it names, with a file that does.
+/// Modules that each module of a folder imports, with a file that does.
 type Named = BTreeMap<String, BTreeMap<String, String>>;
 
-/// What the modules of each folder name.
+/// Import edges between the modules of each folder.
 type Edges = BTreeMap<String, Named>;
 
-/// The modules of the crate and what their `mod.rs` hand on.
+/// Modules of the crate, and the re-exports of their `mod.rs`.
 struct Modules {
     known: BTreeSet<Path>,
     handed_on: BTreeMap<Path, Path>,
@@ -38,10 +38,10 @@ impl Modules {
         Self { known, handed_on }
     }
 
-    /// The module in which what a path names is.
+    /// Module that defines the item at a path, with re-exports resolved.
     fn module_of(&self, path: &Path) -> Option<Path> {
         let mut path = path.clone();
-        // As many hops as a name can reasonably be handed on.
+        // More hops than a name is reasonably re-exported.
         for _ in 0..8 {
             let length = (1..=path.len()).rev().find(|&length| self.known.contains(&path[..length]))?;
             let hop = path.get(..=length).and_then(|name| self.handed_on.get(name));
@@ -52,7 +52,7 @@ impl Modules {
     }
 }
 
-/// Which modules name which, tests apart.
+/// Collects the import edges between sibling modules, except those of tests.
 fn edges(files: &[Source]) -> Edges {
     let modules = Modules::of(files);
     let mut found = Edges::new();
@@ -70,7 +70,7 @@ fn edges(files: &[Source]) -> Edges {
     found
 }
 
-/// All that can be reached from a module, itself only over others.
+/// Modules that are reachable from a module; itself only through others.
 fn reached<'a>(named: &'a Named, from: &str) -> BTreeSet<&'a str> {
     let mut found = BTreeSet::new();
     let mut open = vec![from];
@@ -84,7 +84,7 @@ fn reached<'a>(named: &'a Named, from: &str) -> BTreeSet<&'a str> {
     found
 }
 
-/// The circles: a folder, and modules in it of which each can be reached from each.
+/// Import cycles: a folder, and modules in it of which each is reachable from each.
 fn circles(edges: &Edges) -> Vec<(String, BTreeSet<String>)> {
     let mut found = Vec::new();
     for (folder, named) in edges {
@@ -103,7 +103,7 @@ fn circles(edges: &Edges) -> Vec<(String, BTreeSet<String>)> {
     found
 }
 
-/// The circles link by link, for whoever opens them.
+/// Links of the cycles, one per line, for the error message.
 fn links(edges: &Edges, circles: &[(String, BTreeSet<String>)]) -> String {
     let mut lines = Vec::new();
     for (folder, circle) in circles {
@@ -124,7 +124,7 @@ fn no_modules_side_by_side_import_each_other() {
     assert!(circles.is_empty(), "\n{}", links(&edges, &circles));
 }
 
-/// The circles of these files: folder and modules.
+/// Import cycles of given files, as folder and modules.
 fn circles_of(list: &[(&str, &str)]) -> Vec<String> {
     let source = |(path, text): &(&str, &str)| Source { path: (*path).to_owned(), text: (*text).to_owned() };
     let files: Vec<Source> = list.iter().map(source).collect();
@@ -140,10 +140,10 @@ fn circles_are_reported() {
     for (a, b, c) in [
         ("use super::b::B;", "use super::a::A;", ""),
         ("use crate::gpu::{b, c::C};", "fn f() { crate::gpu::a::g() }", ""),
-        // Over what the folder hands on.
+        // Through re-exports of the folder.
         ("use super::B;", "use crate::gpu::A;", ""),
         ("use super::made;", "use super::super::gpu::A;", ""),
-        // Over a third.
+        // Through a third module.
         ("use super::b::B;", "use super::c::C;", "use super::a::A;"),
         ("use super::*; use super::b::B;", "mod inner { use super::super::a::A; }", ""),
     ] {
@@ -151,7 +151,7 @@ fn circles_are_reported() {
         let expected = if c.is_empty() { "gpu: a b" } else { "gpu: a b c" };
         assert_eq!(found, [expected], "{a} {b} {c}");
     }
-    // Between folders, and over what they hand on.
+    // Between folders, and through their re-exports.
     let found = circles_of(&[
         ("gpu/eye/mod.rs", "pub use gather::Gather;"),
         ("gpu/eye/gather.rs", "use crate::gpu::light::march::March;"),
@@ -171,7 +171,7 @@ fn what_is_no_circle_is_not_reported() {
         ("use super::b::B;", "#[cfg(all(test, unix))]\nuse super::a::A;"),
         ("use super::b::B;", "// use super::a::A;"),
         ("use super::b::B;", "fn f(self) { self.a.g() }"),
-        // What belongs to the folder itself, its parts may use.
+        // Items of the folder itself may be used by its parts.
         ("use super::b::B;", "use super::Shared;"),
         ("use super::Shared;", "use super::Shared;"),
     ] {

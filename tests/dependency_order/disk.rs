@@ -1,12 +1,12 @@
-//! One module opens files for writing, renames and removes them: `src/export/files/`.
+//! Check that only `src/export/files/` opens files for writing, renames and removes them.
 
 use crate::sources::files;
 use crate::tokens::tokens;
 
-/// The one gate to the disk.
+/// Only module that may write to the disk.
 const GATE: &str = "export/files/";
 
-/// What changes the disk, as the last two words of a path, or one that says all.
+/// Functions of `fs` that modify the disk, by the last word of their path.
 const OF_FS: [&str; 12] = [
     "write",
     "rename",
@@ -24,13 +24,13 @@ const OF_FS: [&str; 12] = [
 const OF_FILE: [&str; 3] = ["create", "create_new", "options"];
 const BY_THEMSELVES: [&str; 3] = ["OpenOptions", "DirBuilder", "tempfile"];
 
-/// The parts of a source text that change the disk, its tests apart.
+/// Calls in a source text that modify the disk, except in its tests.
 fn writers(source: &str) -> Vec<String> {
     let (before, tests) = source.split_once("\nmod tests {").unwrap_or((source, ""));
     let after = tests.split_once("\n}\n").map_or("", |(_, after)| after);
     let words = tokens(&[before, after].concat());
     let at = |index: Option<usize>| index.and_then(|index| words.get(index)).map_or("", String::as_str);
-    // In `use std::fs::{self, write};` all of the group is of `fs`.
+    // In `use std::fs::{self, write};` the whole group belongs to `fs`.
     let of_group = |index: usize| {
         let open = words[..index].iter().rposition(|word| word == "{")?;
         let is_list = words[open..index].iter().all(|word| word != ";" && word != "}");
@@ -43,7 +43,7 @@ fn writers(source: &str) -> Vec<String> {
             || of == "fs" && OF_FS.contains(&word)
             || of == "File" && OF_FILE.contains(&word)
             || ["fs", "File"].contains(&word) && at(Some(index + 1)) == "as"
-            // A name that was brought in could be used without its path.
+            // An imported name can be used without its path.
             || of.is_empty() && ["remove_file", "create_dir_all", "hard_link"].contains(&word)
     };
     words

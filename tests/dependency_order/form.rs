@@ -1,21 +1,21 @@
-//! Files say what they are and stay short; folders hold no more than can be taken in at a glance; modules with parts
-//! of their own have one form.
+//! Check of file headings and sizes: files state their subject and stay short, folders have few entries, and modules
+//! with submodules have one form.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::sources::{Source, files, paths};
 
-/// Lines that a file may have: what is longer has two subjects.
+/// Largest number of lines of a file; a longer file has two subjects.
 const LONGEST_FILE: usize = 400;
 
-/// Files and folders that a folder may hold side by side.
+/// Largest number of files and folders in a folder.
 const LARGEST_FOLDER: usize = 15;
 
-/// Folders of pictures, of files that readers have failed on, and of files that others have written to be read: they
-/// grow with what is pictured and read.
+/// Folders without a size limit: snapshots, files on which readers have failed, and reference files written by other
+/// programs.
 const GROWING: [&str; 4] = ["snapshots", "found", "written", "phantom"];
 
-/// How a file of each language begins that says what it is.
+/// Violations of a file: a missing heading, which states its subject, or too many lines.
 fn flaws(file: &Source, heading: &str) -> Vec<String> {
     let Source { path, text } = file;
     let mut found = Vec::new();
@@ -29,7 +29,7 @@ fn flaws(file: &Source, heading: &str) -> Vec<String> {
     found
 }
 
-/// Folders with more than [`LARGEST_FOLDER`] entries, pictures apart.
+/// Folders with more than [`LARGEST_FOLDER`] entries, except [`GROWING`].
 fn crowded(paths: &[String]) -> Vec<String> {
     let mut folders: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
     for path in paths {
@@ -46,14 +46,14 @@ fn crowded(paths: &[String]) -> Vec<String> {
     folders.map(|(folder, entries)| format!("{folder} has {} entries", entries.len())).collect()
 }
 
-/// Files `x.rs` beside a folder `x`, in which the module is `x/mod.rs` here.
+/// Files `x.rs` beside a folder `x`; here such modules are `x/mod.rs`.
 fn beside_their_folder(paths: &[String]) -> Vec<String> {
     let is_folder = |stem: &str| paths.iter().any(|path| path.starts_with(&format!("{stem}/")));
     let files = paths.iter().filter(|path| path.strip_suffix(".rs").is_some_and(is_folder));
     files.map(|path| format!("{path} lies beside its folder, not in it as mod.rs")).collect()
 }
 
-/// Paths below these folders, with the folder's name.
+/// Paths below these folders, each with the folder's name.
 fn all_paths(folders: &[&str]) -> Vec<String> {
     let below =
         |folder: &&str| paths(folder).into_iter().map(|path| format!("{folder}/{path}")).collect::<Vec<_>>();
@@ -102,7 +102,7 @@ fn crowded_folders_are_reported() {
         |folder: &str, count: usize| (0..count).map(|i| format!("{folder}/{i}.rs")).collect::<Vec<_>>();
     assert_eq!(crowded(&files("src/gpu", LARGEST_FOLDER)), Vec::<String>::new());
     assert_eq!(crowded(&files("src/gpu", LARGEST_FOLDER + 1)), ["src/gpu has 16 entries"]);
-    // A folder is one entry, whatever it holds.
+    // A folder is one entry, however many files it contains.
     let nested = [files("src/gpu", LARGEST_FOLDER - 1), files("src/gpu/eye", 5)].concat();
     assert_eq!(crowded(&nested), Vec::<String>::new());
     let nested = [files("src/gpu", LARGEST_FOLDER), files("src/gpu/eye", 5)].concat();

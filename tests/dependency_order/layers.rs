@@ -1,4 +1,4 @@
-//! Modules import those below them only, and some crates belong to some modules.
+//! Check of the layering: modules import lower modules only, and some crates are confined to some modules.
 
 use std::collections::BTreeSet;
 
@@ -6,15 +6,15 @@ use crate::paths::{crates, paths};
 use crate::sources::{Source, files};
 use crate::tokens::tokens;
 
-/// The modules, lowest first. Each may import those before it.
+/// Modules from the lowest layer up. Each may import those before it.
 const ORDER: [&str; 11] =
     ["fault", "math", "data", "model", "plan", "export", "reference", "gpu", "app", "cli", "main"];
 
-/// Imports that the order allows and the design does not: the renderer owes the reference nothing,
-/// or comparing them would prove nothing.
+/// Imports that the order allows and the design forbids: the renderer must not use the reference, or comparing them
+/// would prove nothing.
 const FORBIDDEN: [(&str, &str); 1] = [("gpu", "reference")];
 
-/// Crates, and the modules that may name them.
+/// Crates that only these modules may name.
 const CONFINED: [(&str, &[&str]); 4] = [
     ("egui", &["app", "main"]),
     ("eframe", &["app", "main"]),
@@ -33,7 +33,7 @@ fn violations(file: &Source) -> Vec<String> {
         }
     }
 
-    // The root itself declares all modules, in alphabetical order.
+    // The root declares all modules, in alphabetical order.
     if top == "lib" {
         return found;
     }
@@ -73,7 +73,7 @@ fn source_files_keep_the_order_of_modules() {
 fn the_order_is_that_of_the_documentation() {
     let documented: Vec<_> = include_str!("../../src/lib.rs")
         .lines()
-        // Modules that a feature brings are named without a link.
+        // Modules behind a feature are listed without a link.
         .filter_map(|line| line.strip_prefix("//! | [`").or_else(|| line.strip_prefix("//! | `")))
         .filter_map(|line| line.split('`').next())
         .map(|name| name.trim_start_matches("mod@"))

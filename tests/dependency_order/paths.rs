@@ -1,8 +1,8 @@
-//! The paths of modules and crates that source text names.
+//! Parser of module paths and crate names in source text.
 
 use std::collections::BTreeSet;
 
-/// A path below the crate's root, such as `gpu::eye::Display`; `*` for all that a module has.
+/// Path below the crate's root, such as `gpu::eye::Display`; `*` for a glob import.
 pub(crate) type Path = Vec<String>;
 
 /// Paths below the crate's root that a module names: `crate::X`, `crate::{X, Y}`, `super::super::X`, `self::X`,
@@ -27,8 +27,8 @@ pub(crate) fn paths(tokens: &[String], module: &[&str]) -> Vec<Path> {
     found
 }
 
-/// Follows a path from a token on, which begins in `module`, and notes where it leads, if it names anything. Returns
-/// where the path ends.
+/// Parses a path from a token on, starting in `module`, and records its target, if it names anything. Returns the
+/// index after the path.
 fn follow(tokens: &[String], mut at: usize, module: Path, found: &mut Vec<Path>) -> usize {
     let token = |at: usize| tokens.get(at).map_or("", String::as_str);
     let mut path = module;
@@ -49,7 +49,7 @@ fn follow(tokens: &[String], mut at: usize, module: Path, found: &mut Vec<Path>)
                 }
                 return at + 1;
             }
-            // Only what follows `::` (or is in a group) is a name of the path.
+            // Only a token after `::` (or in a group) is a name of the path.
             name if is_name(name) && matches!(before, "::" | "{" | ",") => {
                 path.push(name.to_owned());
                 names += 1;
@@ -69,7 +69,7 @@ fn is_name(token: &str) -> bool {
     token == "*" || token.starts_with(|c: char| c.is_alphabetic() || c == '_')
 }
 
-/// The first word of every path and `use`: the crates that a file names.
+/// First word of every path and `use`: the crates that a file names.
 pub(crate) fn crates(tokens: &[String]) -> BTreeSet<&str> {
     let token = |at: Option<usize>| at.and_then(|at| tokens.get(at)).map_or("", String::as_str);
     let continues = |word: &str| {
@@ -87,8 +87,8 @@ pub(crate) fn crates(tokens: &[String]) -> BTreeSet<&str> {
         .collect()
 }
 
-/// What a module calls by another name than its own: for each `use` the name in the module and the path that it
-/// stands for. Paths may begin with a module beside the file or below it.
+/// Aliases of a module: for each `use` the name in the module and the path that it refers to. Paths may begin with a
+/// module beside the file or below it.
 pub(crate) fn imports(tokens: &[String], module: &[&str]) -> Vec<(String, Path)> {
     let mut found = Vec::new();
     for at in (0..tokens.len()).filter(|&at| tokens[at] == "use") {
@@ -97,7 +97,7 @@ pub(crate) fn imports(tokens: &[String], module: &[&str]) -> Vec<(String, Path)>
     found
 }
 
-/// One entry of a `use`: a path, perhaps a group, perhaps under another name. Returns where it ends.
+/// Parses one entry of a `use`: a path, perhaps a group, perhaps renamed. Returns the index after it.
 fn entries(tokens: &[String], mut at: usize, start: Path, found: &mut Vec<(String, Path)>) -> usize {
     let token = |at: usize| tokens.get(at).map_or("", String::as_str);
     let mut path = start;
@@ -129,7 +129,7 @@ fn entries(tokens: &[String], mut at: usize, start: Path, found: &mut Vec<(Strin
     }
 }
 
-/// Tokens without what only tests see: items behind `#[cfg(test)]` and `#[cfg(all(test, …))]`.
+/// Removes tokens that only tests see: items behind `#[cfg(test)]` and `#[cfg(all(test, …))]`.
 pub(crate) fn without_tests(tokens: &[String]) -> Vec<String> {
     let is = |at: usize, words: &[&str]| {
         words.iter().enumerate().all(|(i, w)| tokens.get(at + i).is_some_and(|t| t == w))
@@ -148,7 +148,7 @@ pub(crate) fn without_tests(tokens: &[String]) -> Vec<String> {
     kept
 }
 
-/// Where an item with its attributes ends: behind its `;` or the brace that closes its body.
+/// Index after an item with its attributes: after its `;` or the brace that closes its body.
 fn end_of_item(tokens: &[String], mut at: usize) -> usize {
     let (mut brackets, mut braces) = (0, 0);
     while at < tokens.len() {

@@ -1,4 +1,4 @@
-//! The program in a folder of its own: what it is given, what it says and what it leaves behind.
+//! Runner of the program in a temporary folder: arguments, outputs and files left behind.
 
 use std::fs;
 use std::path::PathBuf;
@@ -7,16 +7,16 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-/// Longest that any command may take here; most take well under a second.
+/// Longest run of any command here; most take well under a second.
 pub(crate) const PATIENCE: Duration = Duration::from_mins(2);
 
-/// Longest that a refusal may take, whatever sizes a file claims.
+/// Longest time until a volume is refused, whatever sizes its file claims.
 pub(crate) const PROMPT: Duration = Duration::from_secs(5);
 
-/// A folder of its own for each test.
+/// Temporary folder, one for each test.
 pub(crate) struct Folder(tempfile::TempDir);
 
-/// What a command did.
+/// Outcome of a command: exit code, outputs and duration.
 #[derive(Debug)]
 pub(crate) struct Outcome {
     pub(crate) code: Option<i32>,
@@ -26,8 +26,8 @@ pub(crate) struct Outcome {
 }
 
 impl Outcome {
-    /// What the program says went wrong: from the last line that begins with `error: `. Drivers and
-    /// the log may have written before it.
+    /// Error message of the program: its output from the last line that begins with `error: `. Drivers and the log
+    /// may have written before it.
     pub(crate) fn message(&self) -> Option<&str> {
         let start = self.stderr.rfind("\nerror: ").map(|end_of_line| end_of_line + 1);
         start.or_else(|| self.stderr.starts_with("error: ").then_some(0)).map(|at| &self.stderr[at..])
@@ -70,7 +70,7 @@ impl Folder {
     }
 
     pub(crate) fn run_with(&self, args: &str, environment: &[(&str, &str)]) -> Outcome {
-        // Files instead of pipes: a pipe that nobody empties would block the program.
+        // Files instead of pipes: a pipe that is not drained would block the program.
         let file = || tempfile::NamedTempFile::new().expect("a temporary file");
         let (stdout, stderr) = (file(), file());
         let handle = |file: &tempfile::NamedTempFile| file.reopen().expect("a second handle");
@@ -101,7 +101,7 @@ impl Folder {
         Outcome { code: status.code(), took: start.elapsed(), stdout: text(&stdout), stderr: text(&stderr) }
     }
 
-    /// Runs a command that must work; gives its standard output.
+    /// Runs a command that must succeed, and returns its standard output.
     pub(crate) fn succeed(&self, args: &str) -> String {
         let outcome = self.run(args);
         assert_eq!(outcome.code, Some(0), "`{args}`: {outcome:?}");
@@ -109,8 +109,7 @@ impl Folder {
         outcome.stdout
     }
 
-    /// Runs a command that must fail with this code and leave the folder as it was; gives what it
-    /// says.
+    /// Runs a command that must fail with this code and leave the folder unchanged; returns its error message.
     pub(crate) fn fail(&self, args: &str, code: i32) -> String {
         self.fail_with(args, code, &[])
     }
@@ -125,8 +124,7 @@ impl Folder {
         outcome.message().unwrap_or_else(|| panic!("`{args}` should say `error: …`: {outcome:?}")).to_owned()
     }
 
-    /// A volume that no command accepts: `info` and `render` fail with one of these codes, soon, and
-    /// name the file.
+    /// Checks that a volume is refused: `info` and `render` fail with one of these codes, quickly, and name the file.
     pub(crate) fn refuse(&self, file: &str, codes: &[i32]) -> String {
         let before = self.names();
         let mut said = String::new();
