@@ -6,7 +6,7 @@
 use std::error::Error;
 
 use chiaroscuro::data::{Dataset, synthetic};
-use chiaroscuro::gpu::{Context, PicturePainter, RenderOptions, Renderer, device_descriptor, first_look};
+use chiaroscuro::gpu::{GpuContext, PicturePainter, RenderOptions, Renderer, device_descriptor, first_look};
 
 fn main() -> Result<(), Box<dyn Error>> {
     // The other program opens its device itself, with at least the features and limits of `device_descriptor`.
@@ -27,14 +27,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let view = target.create_view(&wgpu::TextureViewDescriptor::default());
 
     // Once: a renderer on that device, and a painter for targets of that format.
-    let context = Context::new(&adapter, device.clone(), queue.clone())?;
+    let context = GpuContext::new(&adapter, device.clone(), queue.clone())?;
     let mut renderer = Renderer::new(&context)?;
     let painter = PicturePainter::new(&context, target.format())?;
     let dataset = Dataset::new(synthetic::builtin("chair", Some(32))?);
     let settings = first_look(&mut renderer, &dataset)?;
 
     // For every picture: draw it, and paint it in a render pass of the program, here into a part of its texture.
-    // Programs that must not block run the renderer's work step by step (`Renderer::begin`).
+    // Programs that must not block run the renderer's work step by step (`Renderer::new`).
     let size = [200, 150];
     renderer.draw(&dataset, &settings, size, &RenderOptions::default())?;
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());

@@ -10,7 +10,7 @@ use chiaroscuro::data::Dataset;
 use chiaroscuro::data::load::{LoadControl, LoadOptions};
 use chiaroscuro::data::open;
 use chiaroscuro::export::export_png;
-use chiaroscuro::gpu::{Context, RenderOptions, Renderer, first_look};
+use chiaroscuro::gpu::{GpuContext, RenderOptions, Renderer, first_look};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let dataset = Dataset::new(open(&source, &LoadOptions::default(), &LoadControl::new())?);
 
     // A device without a window: the fastest, or the one that WGPU_ADAPTER_NAME names.
-    let context = Context::headless()?;
+    let context = GpuContext::headless()?;
     let mut renderer = Renderer::new(&context)?;
 
     // The settings are the whole look. These are derived from the voxels; every field may be changed.
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // RGBA bytes in sRGB, row by row from the top left.
     let size = [320, 240];
-    let shown = renderer.render_shown(&dataset, &settings, size, &RenderOptions::default())?;
+    let shown = renderer.render_display(&dataset, &settings, size, &RenderOptions::default())?;
     export_png(size, &shown, false, None, &path)?;
     println!("{}: {source}, on {}", path.display(), context.description());
     Ok(())

@@ -7,7 +7,7 @@ use chiaroscuro::cli::{self, CliError, ViewerRequest};
 use chiaroscuro::data::one_line;
 
 fn main() -> ExitCode {
-    name_runtime_folder();
+    set_runtime_dir();
     let quiet = env_logger::Env::default().default_filter_or("warn,wgpu_hal=error,naga=error,rfd=off");
     // Log messages may quote untrusted text of drivers and files.
     env_logger::Builder::from_env(quiet)
@@ -29,7 +29,7 @@ fn main() -> ExitCode {
 /// lines that begin with *error* in successful runs. A directory that does not exist is treated as empty.
 #[cfg(target_os = "linux")]
 #[expect(unsafe_code, reason = "the environment is changed before anything else runs")]
-fn name_runtime_folder() {
+fn set_runtime_dir() {
     use std::os::unix::fs::MetadataExt as _;
 
     const NAME: &str = "XDG_RUNTIME_DIR";
@@ -64,15 +64,15 @@ mod before_main {
     // use the runtime.
     #[used]
     #[unsafe(link_section = ".init_array")]
-    static LOOK: extern "C" fn() = look_at_output;
+    static CHECK_OUTPUT: extern "C" fn() = look_at_output;
 }
 
 #[cfg(feature = "window")]
 fn open_window(request: ViewerRequest) -> Result<(), CliError> {
-    use chiaroscuro::app::{self, Options};
-    use chiaroscuro::gpu::Context;
+    use chiaroscuro::app::{self, WindowOptions};
+    use chiaroscuro::gpu::GpuContext;
 
-    let options = Options {
+    let options = WindowOptions {
         source: request.source,
         load: request.load,
         session: request.session,
@@ -81,7 +81,7 @@ fn open_window(request: ViewerRequest) -> Result<(), CliError> {
         adjust: None,
         storage: app::storage_folder(),
     };
-    app::run(options).map_err(|err| match Context::headless() {
+    app::run(options).map_err(|err| match GpuContext::headless() {
         // Without an adapter no window opens, and the window system's own message does not say so.
         Err(no_adapter) => {
             app::show_on_desktop(&no_adapter.to_string());

@@ -11,7 +11,7 @@ const NOT_SHOWN: [&str; 15] = [
     "id_salt(",
     "Grid::new(",
     "load_texture(",
-    "advanced(ui,",
+    "advanced_group(ui,",
     "log::debug!(",
     "log::info!(",
     "log::warn!(",
@@ -20,19 +20,19 @@ const NOT_SHOWN: [&str; 15] = [
     "reason =",
     "debug_struct(",
     "write!(f,",
-    "const METHOD: &str =",
+    "const GET_PROPERTY: &str =",
 ];
 
 /// String literal, with the code before it in its statement.
 #[derive(Debug, PartialEq)]
-struct Literal {
+struct StringLiteral {
     line: usize,
     before: String,
     text: String,
 }
 
 /// Returns all string literals of a source text, except those in comments and in its tests.
-fn literals(source: &str) -> Vec<Literal> {
+fn literals(source: &str) -> Vec<StringLiteral> {
     let source = source.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
     let mut found = Vec::new();
     let mut before = String::new();
@@ -64,7 +64,7 @@ fn literals(source: &str) -> Vec<Literal> {
                         c => text.push(c),
                     }
                 }
-                found.push(Literal { line: first_line, before: before.clone(), text });
+                found.push(StringLiteral { line: first_line, before: before.clone(), text });
             }
             ';' | '{' | '}' => before.clear(),
             c => before.push(c),
@@ -75,7 +75,7 @@ fn literals(source: &str) -> Vec<Literal> {
 
 /// Returns true if a text reads like a sentence or label: two words in a row, or one with a capital. Placeholders in
 /// braces are ignored.
-fn is_for_people(text: &str) -> bool {
+fn reads_like_text(text: &str) -> bool {
     let mut depth = 0;
     let shown: String = text
         .chars()
@@ -92,9 +92,9 @@ fn is_for_people(text: &str) -> bool {
     words.len() > 1 || words.iter().any(capital)
 }
 
-fn is_shown(literal: &Literal) -> bool {
+fn is_user_visible(literal: &StringLiteral) -> bool {
     let before = literal.before.trim_end().trim_end_matches("format!(").trim_end();
-    is_for_people(&literal.text) && !NOT_SHOWN.iter().any(|name| before.ends_with(name))
+    reads_like_text(&literal.text) && !NOT_SHOWN.iter().any(|name| before.ends_with(name))
 }
 
 fn files(folder: &Path, found: &mut Vec<PathBuf>) {
@@ -110,7 +110,7 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
 }
 
 #[test]
-fn the_window_takes_its_words_from_one_module() {
+fn window_texts_are_in_one_module() {
     let app = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/app");
     let mut found = Vec::new();
     files(&app, &mut found);
@@ -126,16 +126,16 @@ fn the_window_takes_its_words_from_one_module() {
     let strays: Vec<String> = others
         .iter()
         .flat_map(|path| {
-            let strays = words(path).into_iter().filter(is_shown);
-            strays.map(|Literal { line, text, .. }| format!("{}:{line}: {text}", path.display()))
+            let strays = words(path).into_iter().filter(is_user_visible);
+            strays.map(|StringLiteral { line, text, .. }| format!("{}:{line}: {text}", path.display()))
         })
         .collect();
     assert!(strays.is_empty(), "these belong into src/app/text:\n{}", strays.join("\n"));
 }
 
 #[test]
-fn words_that_stray_are_noticed() {
-    let shown = |source: &str| literals(source).iter().filter(|literal| is_shown(literal)).count();
+fn texts_outside_are_detected() {
+    let shown = |source: &str| literals(source).iter().filter(|literal| is_user_visible(literal)).count();
     for source in [
         "ui.label(\"Width\");",
         "ui.label(format!(\"{count} of {total} parts\"));",

@@ -15,7 +15,7 @@
 
 // Limit of extinction. Larger values would be no darker: half of it absorbs all light within a voxel, and it fits in
 // 16 bits.
-const MOST_EXTINCTION = 1024.0;
+const MAX_EXTINCTION = 1024.0;
 
 // Linear colour of the material at an index-space point.
 fn color_at(p: vec3f) -> vec3f {
@@ -42,14 +42,14 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
     }
     var sum = vec4f(0.0);
     for (var corner = 0u; corner < 8u; corner += 1u) {
-        let p = place_in(id, corner);
+        let p = block_sample_point(id, corner);
         let extinction = extinction_at(p);
         if (extinction > 0.0) {
             sum += extinction * vec4f(color_at(p) * blocks.albedo, 1.0);
         }
     }
     sum *= blocks.edge / 8.0;
-    sum *= min(MOST_EXTINCTION / max(sum.a, 1e-9), 1.0);
+    sum *= min(MAX_EXTINCTION / max(sum.a, 1e-9), 1.0);
 #if ONE_COLOR
     textureStore(medium, id + 1u, vec4f(0.0, sum.a, 0.0, 0.0));
 #else

@@ -1,7 +1,7 @@
 // Declarations shared by the passes of scattered light: blocks and their scattering.
 #import "common/most_light.wgsl"
 
-struct Bounce {
+struct BounceUniform {
     // Number of blocks along x, y and z.
     dims: vec3u,
     // One over the number of directions.
@@ -9,15 +9,15 @@ struct Bounce {
     // Common colour of all light, if there is one; its amount is then stored in the first component.
     color: vec3f,
     // Minimum extinction of the blocks that are processed.
-    least: f32,
+    min_extinction: f32,
 }
 
-@group(0) @binding(3) var<uniform> bound_bounce: Bounce;
-var<private> bounce: Bounce;
+@group(0) @binding(3) var<uniform> bound_bounce: BounceUniform;
+var<private> bounce: BounceUniform;
 // Scattering in rgb, extinction in a: optical depths per shortest edge of a voxel.
 @group(0) @binding(4) var<storage, read> scattering: array<vec4f>;
 
 // Index of a block in the lists.
-fn number_of(id: vec3u) -> u32 {
+fn block_index(id: vec3u) -> u32 {
     return (id.z * bounce.dims.y + id.y) * bounce.dims.x + id.x;
 }

@@ -7,8 +7,8 @@
 #import "common/space.wgsl"
 #import "shading/lights.wgsl"
 
-struct First {
-    space: Space,
+struct SingleScatteringUniform {
+    space: SpaceUniform,
     // One over the size of the block texture, including the border.
     block_scale: vec3f,
     // Number of voxels along the edge of a block.
@@ -27,11 +27,11 @@ struct First {
     pad0: f32,
     // 1 if `sums` hold the light of the sky, else 0.
     has_sky: f32,
-    lights: array<Light, MAX_LIGHTS>,
+    lights: array<LightUniform, MAX_LIGHTS>,
 }
 
-@group(0) @binding(0) var<uniform> bound_scene: First;
-var<private> scene: First;
+@group(0) @binding(0) var<uniform> bound_scene: SingleScatteringUniform;
+var<private> scene: SingleScatteringUniform;
 @group(0) @binding(1) var medium: texture_3d<f32>;
 @group(0) @binding(2) var clamped: sampler;
 @group(0) @binding(5) var<storage, read> sums: array<vec4f>;
@@ -50,11 +50,11 @@ fn medium_at(place: vec3f) -> f32 {
 
 // Transmittance of a light to a block with this extinction: the mean over the block, as for slabs, along a ray with
 // steps of one block.
-fn left_of(light: Light, block: vec3f, extinction: f32, towards: Towards) -> f32 {
-    let along = to_index(scene.space, towards.direction) / scene.voxel_step;
+fn transmittance_to_light(light: LightUniform, block: vec3f, extinction: f32, towards: LightDirection) -> f32 {
+    let along = index_from_scene_vector(scene.space, towards.direction) / scene.voxel_step;
     let step = 1.0 / max(max(abs(along.x), abs(along.y)), abs(along.z));
     let scale = light.extinction_scale / scene.edge;
-    let own = slab_mean(extinction * min(step, towards.distance) * scale);
+    let own = slab_mean_transmittance(extinction * min(step, towards.distance) * scale);
     var depth = 0.0;
     var way = 0.5 * step;
     loop {
@@ -81,24 +81,24 @@ fn main(@builtin(global_invocation_id) thread: vec3u) {
     if (any(id >= vec3u(bounce.dims.xy, min(bounce.dims.z, scene.end)))) {
         return;
     }
-    let at = number_of(id);
+    let at = block_index(id);
     let found = scattering[at];
     if (found.a <= 0.0) {
         return;
     }
     let block = vec3f(id);
-    let position = place_of(scene.space, (block + 0.5) * scene.voxel_step - 0.5);
+    let position = scene_from_index(scene.space, (block + 0.5) * scene.voxel_step - 0.5);
     var light = sums[at].rgb * (bounce.share * scene.has_sky) + scene.emission;
     for (var i = 0u; i < scene.count; i += 1u) {
         // Indexed in the uniform: copying an array that is indexed dynamically would keep it in memory.
         let whole = bound_scene.lights[i];
         var arriving = 0.0;
         for (var number = 0u; number < whole.points; number += 1u) {
-            let one = point_of(whole, number);
+            let one = area_light_point(whole, number);
             let towards = to_light(one, position);
-            var left = hood_share(one, towards.direction);
+            var left = cone_attenuation(one, towards.direction);
             if (i < scene.shadowed && left > 0.0) {
-                left *= left_of(one, block, found.a, towards);
+                left *= transmittance_to_light(one, block, found.a, towards);
             }
             arriving += left;
         }

@@ -24,14 +24,14 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
     if (any(id >= sweep.dims)) {
         return;
     }
-    let at = number_of(id);
-    if (scattering[at].a < bounce.least) {
+    let at = block_index(id);
+    if (scattering[at].a < bounce.min_extinction) {
         return;
     }
     var sum = sums[at].rgb * sweep.has_sums;
     for (var i = 0u; i < DIRECTIONS; i += 1u) {
         let rays = bound_sweep.rays[i];
-        let ray = place_among(rays, vec3f(id));
+        let ray = ray_coordinates(rays, vec3f(id));
         let place = (ray + vec3f(0.5, 0.5, f32(rays.layer) + 0.5)) * sweep.sheet_scale;
         sum += rays.weight * textureSampleLevel(sheets, clamped, place, 0.0).rgb;
     }

@@ -12,7 +12,7 @@ const THREADS = 256u;
 
 // Limit of the ratio. Slower decay cannot be distinguished from none: bounces that bring as much as those before say
 // little about the limit.
-const MOST_RATIO = 0.98;
+const MAX_RATIO = 0.98;
 
 var<workgroup> products: array<vec3f, THREADS>;
 var<workgroup> squares: array<vec3f, THREADS>;
@@ -42,6 +42,6 @@ fn main(@builtin(local_invocation_index) thread: u32) {
     }
     if (thread == 0u) {
         let found = products[0] / max(squares[0], vec3f(1e-20));
-        ratio[0] = vec4f(clamp(found, vec3f(0.0), vec3f(MOST_RATIO)), 0.0);
+        ratio[0] = vec4f(clamp(found, vec3f(0.0), vec3f(MAX_RATIO)), 0.0);
     }
 }

@@ -15,7 +15,7 @@
 // Set from the first bounce on.
 override HAS_BOUNCED: bool = true;
 // Set if the series is extrapolated.
-override LEAPS: bool = false;
+override EXTRAPOLATES: bool = false;
 
 @compute @workgroup_size(4, 4, 4)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -23,9 +23,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (any(id >= bounce.dims)) {
         return;
     }
-    let at = number_of(id);
+    let at = block_index(id);
     let found = scattering[at];
-    if (found.a < bounce.least) {
+    if (found.a < bounce.min_extinction) {
         return;
     }
     var light = vec3f(0.0);
@@ -33,7 +33,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let before = last[at].rgb;
         let brought = sums[at].rgb * bounce.share - before;
         light = before + brought;
-        if (LEAPS) {
+        if (EXTRAPOLATES) {
             light = max(before + brought / (1.0 - ratio[0].rgb), vec3f(0.0));
         }
         change[at] = vec4f(brought, 0.0);
@@ -42,7 +42,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     last[at] = vec4f(light, 0.0);
     if (found.a > 0.0) {
-        let given = min(first[at].rgb + found.rgb * light, vec3f(MOST_LIGHT));
+        let given = min(first[at].rgb + found.rgb * light, vec3f(MAX_HALF_FLOAT));
 #if ONE_COLOR
         textureStore(medium, id + 1u, vec4f(given.r, found.a, 0.0, 0.0));
 #else

@@ -13,13 +13,13 @@
 
 // If all light has one colour only its amount is followed, a third of the numbers.
 #if ONE_COLOR
-alias Light = f32;
+alias LightUniform = f32;
 
-fn arriving_of(rays: SkyRays) -> Light {
-    return rays.arriving.r;
+fn incoming_radiance(rays: SweepRaysUniform) -> LightUniform {
+    return rays.incoming_radiance.r;
 }
 
-fn given_in(found: vec4f) -> Light {
+fn emission_of(found: vec4f) -> LightUniform {
     return found.r;
 }
 
@@ -27,17 +27,17 @@ fn extinction_in(found: vec4f) -> f32 {
     return found.g;
 }
 
-fn texel_of(light: Light) -> vec4f {
+fn level_texel(light: LightUniform) -> vec4f {
     return vec4f(light);
 }
 #else
-alias Light = vec3f;
+alias LightUniform = vec3f;
 
-fn arriving_of(rays: SkyRays) -> Light {
-    return rays.arriving;
+fn incoming_radiance(rays: SweepRaysUniform) -> LightUniform {
+    return rays.incoming_radiance;
 }
 
-fn given_in(found: vec4f) -> Light {
+fn emission_of(found: vec4f) -> LightUniform {
     return found.rgb;
 }
 
@@ -45,7 +45,7 @@ fn extinction_in(found: vec4f) -> f32 {
     return found.a;
 }
 
-fn texel_of(light: Light) -> vec4f {
+fn level_texel(light: LightUniform) -> vec4f {
     return vec4f(light, 0.0);
 }
 #endif
@@ -58,20 +58,20 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (any(id.xy >= rays.size)) {
         return;
     }
-    let size = turned_to(rays, vec3f(sweep.dims));
+    let size = to_sweep_axes(rays, vec3f(sweep.dims));
     let last = size.x - 1.0;
     let start = vec2f(id.xy) + rays.first;
     let span = slices_of_ray(rays, id.xy, start, size);
-    var light = arriving_of(rays);
+    var light = incoming_radiance(rays);
     for (var n = span.x; n <= span.y; n += 1.0) {
-        let slice = select(last - n, n, rays.rises == 1u);
-        let block = turned_from(rays, vec3f(slice, start + rays.drift * n));
+        let slice = select(last - n, n, rays.is_ascending == 1u);
+        let block = from_sweep_axes(rays, vec3f(slice, start + rays.drift * n));
         let found = textureSampleLevel(medium, clamped, (block + 1.5) * sweep.block_scale, 0.0) * rays.step;
         let tau = extinction_in(found);
-        let given = given_in(found);
-        let share = slab_source(tau);
+        let given = emission_of(found);
+        let share = slab_emission_share(tau);
         let mean = 1.0 - tau * share;
-        textureStore(sheets, vec3u(id.xy, rays.layer + u32(n)), texel_of(min(light * mean + given * share, Light(MOST_LIGHT))));
+        textureStore(sheets, vec3u(id.xy, rays.layer + u32(n)), level_texel(min(light * mean + given * share, LightUniform(MAX_HALF_FLOAT))));
         light = light * exp(-tau) + given * mean;
     }
 }

@@ -6,7 +6,7 @@ alias Left = vec3f;
 alias Left = f32;
 #endif
 
-fn stored_left(texel: vec4f) -> Left {
+fn stored_transmittance(texel: vec4f) -> Left {
 #if COLORED
     return texel.rgb;
 #else
@@ -15,7 +15,7 @@ fn stored_left(texel: vec4f) -> Left {
 }
 
 // Extinction of light for an entry of its table.
-fn extinction_of(entry: vec4f) -> Left {
+fn entry_extinction(entry: vec4f) -> Left {
 #if COLORED
     return entry.rgb * entry.a;
 #else
@@ -23,7 +23,7 @@ fn extinction_of(entry: vec4f) -> Left {
 #endif
 }
 
-fn least_of(values: Left) -> f32 {
+fn min_component(values: Left) -> f32 {
 #if COLORED
     return min(values.r, min(values.g, values.b));
 #else

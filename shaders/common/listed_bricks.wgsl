@@ -9,13 +9,13 @@ fn listed_brick(group: vec3u) -> u32 {
 }
 
 // Coordinates of a packed brick.
-fn unpacked(packed: u32) -> vec3u {
+fn unpack_coordinates(packed: u32) -> vec3u {
     return vec3u(packed & 1023u, packed >> 10u & 1023u, packed >> 20u);
 }
 
 // Light voxel of an invocation, in a packed brick.
 fn voxel_in(packed: u32, group: vec3u, local: vec3u) -> vec3u {
-    let brick = unpacked(packed);
+    let brick = unpack_coordinates(packed);
     return brick * BRICK_EDGE + local + vec3u(0u, 0u, group.x % 2u * (BRICK_EDGE / 2));
 }
 

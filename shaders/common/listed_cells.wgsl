@@ -16,5 +16,5 @@ fn listed_voxel(listed: u32, lane: u32) -> u32 {
 
 // Coordinates of the invocation's voxel.
 fn voxel_of(cell: u32, lane: u32) -> vec3u {
-    return unpacked(cell) * CELL_EDGE + (vec3u(lane, lane >> 1u, lane >> 2u) & vec3u(1u));
+    return unpack_coordinates(cell) * CELL_EDGE + (vec3u(lane, lane >> 1u, lane >> 2u) & vec3u(1u));
 }

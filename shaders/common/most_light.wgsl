@@ -1,2 +1,2 @@
 // Largest number in 16-bit floats: larger ones become infinite, and products of infinity and zero NaN.
-const MOST_LIGHT = 65504.0;
+const MAX_HALF_FLOAT = 65504.0;

@@ -3,35 +3,35 @@
 #import "density/volume.wgsl"
 
 // Ray in cell coordinates: position at slab 0, and step from slab to slab.
-struct Walk {
+struct CellRay {
     origin: vec3f,
     step: vec3f,
     // Slabs per cell along each axis.
     inverse: vec3f,
 }
 
-fn walk_along(frame: SheetFrame, ray: Ray) -> Walk {
+fn cell_ray(frame: SheetFrameUniform, ray: Ray) -> CellRay {
     let origin = (ray.origin + ray.direction * depth_of(frame, 0.0)) / CELL_EDGE;
     let step = ray.direction * frame.slab / CELL_EDGE;
     let parallel_to = abs(step) < vec3f(1e-9);
-    return Walk(origin, step, 1.0 / select(step, vec3f(1e-9), parallel_to));
+    return CellRay(origin, step, 1.0 / select(step, vec3f(1e-9), parallel_to));
 }
 
 // Cell that contains the middle of slab k; it may lie outside the grid.
-fn cell_at(walk: Walk, k: i32) -> vec3f {
+fn cell_at(walk: CellRay, k: i32) -> vec3f {
     return floor(walk.origin + walk.step * f32(k));
 }
 
 // Distances of a cell to the nearest visible ones. Cells outside the grid take the values at its border: if the
 // border is that far from any visible cell, so is everything outside it.
-fn near(distances: texture_3d<f32>, cell: vec3f) -> vec2i {
+fn cell_distances(distances: texture_3d<f32>, cell: vec3f) -> vec2i {
     let stored = textureSampleLevel(distances, nearest, (cell + 0.5) * grid.cell_scale, 0.0).rg;
     return vec2i(stored * 255.0 + 0.5);
 }
 
 // First slab beyond the cube of empty cells around `cell`. `empty` is the number of layers of that cube: 1 is the
 // cell alone. Never skips a slab outside the cube.
-fn leap(walk: Walk, k: i32, cell: vec3f, empty: i32) -> i32 {
+fn skip_empty_cells(walk: CellRay, k: i32, cell: vec3f, empty: i32) -> i32 {
     let middle = (cell + 0.5 - walk.origin) * walk.inverse;
     let exits = middle + abs(walk.inverse) * (f32(empty) - 0.5);
     // Rounded down by a thousandth of a slab: visiting one more slab of the cube is harmless.

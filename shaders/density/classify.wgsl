@@ -7,20 +7,20 @@
 
 #if PRECLASSIFY
 // Pre-classified material at a point, from the pyramid.
-fn spread(p: vec3f, level: f32) -> vec4f {
+fn preclassified_at(p: vec3f, level: f32) -> vec4f {
     return textureSampleLevel(pyramid_texture, clamped, (p + 4.5) * grid.pyramid_scale, level);
 }
 
 // Pre-classified material averaged over slab k, where the ray crosses it.
-fn slab_spread(frame: SheetFrame, ray: Ray, k: f32) -> vec4f {
+fn preclassified_in_slab(frame: SheetFrameUniform, ray: Ray, k: f32) -> vec4f {
     let depth = depth_of(frame, k);
     if (QUADRATURE == 2u) {
         let near = depth - TWO_POINT_OFFSET * frame.slab;
         let far = depth + TWO_POINT_OFFSET * frame.slab;
-        return 0.5 * (spread(ray.origin + ray.direction * near, kernel_level(frame, near))
-            + spread(ray.origin + ray.direction * far, kernel_level(frame, far)));
+        return 0.5 * (preclassified_at(ray.origin + ray.direction * near, kernel_level(frame, near))
+            + preclassified_at(ray.origin + ray.direction * far, kernel_level(frame, far)));
     }
-    return spread(ray.origin + ray.direction * depth, kernel_level(frame, depth));
+    return preclassified_at(ray.origin + ray.direction * depth, kernel_level(frame, depth));
 }
 #endif
 
@@ -32,9 +32,9 @@ struct SlabSample {
     there: f32,
 }
 
-fn slab_sample(frame: SheetFrame, ray: Ray, k: f32) -> SlabSample {
+fn slab_sample(frame: SheetFrameUniform, ray: Ray, k: f32) -> SlabSample {
 #if PRECLASSIFY
-    let found = slab_spread(frame, ray, k);
+    let found = preclassified_in_slab(frame, ray, k);
     return SlabSample(vec4f(found.gba / max(found.r, 1e-20), classified_extinction(found.r)), found.r, 1.0);
 #else
     let density = slab_density(frame, ray, k);
@@ -53,6 +53,6 @@ fn slab_sample(frame: SheetFrame, ray: Ray, k: f32) -> SlabSample {
 }
 
 // Extinction of slab k, without colour.
-fn slab_extinction(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
+fn slab_extinction(frame: SheetFrameUniform, ray: Ray, k: f32) -> f32 {
     return classified_extinction(slab_density(frame, ray, k)) * slab_presence(frame, ray, k);
 }

@@ -6,7 +6,7 @@
 override CUT: bool = false;
 
 // Region that remains, in index space.
-struct Cut {
+struct CutUniform {
     low: vec3f,
     pad0: f32,
     high: vec3f,
@@ -16,7 +16,7 @@ struct Cut {
 }
 
 // Depths at which a ray enters and leaves the region; if it misses the region, the first is larger.
-fn span_within(cut: Cut, ray: Ray) -> vec2f {
+fn span_within(cut: CutUniform, ray: Ray) -> vec2f {
     let along = abs(ray.direction) < vec3f(1e-12);
     let direction = select(ray.direction, vec3f(1e-12), along);
     let a = (cut.low - ray.origin) / direction;
@@ -35,7 +35,7 @@ fn span_within(cut: Cut, ray: Ray) -> vec2f {
 }
 
 // Fraction of a slab around `depth` inside the span; exactly 1 where nothing is cut.
-fn share_within(span: vec2f, depth: f32, slab: f32) -> f32 {
+fn slab_fraction_inside(span: vec2f, depth: f32, slab: f32) -> f32 {
     if (!CUT) {
         return 1.0;
     }
@@ -46,20 +46,20 @@ fn share_within(span: vec2f, depth: f32, slab: f32) -> f32 {
 
 // Depth below a face, in voxels, over which extinction for light fades in: a light volume cannot represent a step
 // within a voxel, which would show as a pattern on the face.
-const SKIN = 2.0;
+const FADE_DEPTH_VOXELS = 2.0;
 
 // Fraction of the material at a point that attenuates light: smoothly from 0 at the faces to 1.
-fn share_that_shades(cut: Cut, p: vec3f) -> f32 {
+fn shading_fraction(cut: CutUniform, p: vec3f) -> f32 {
     if (!CUT) {
         return 1.0;
     }
-    let inside = smoothstep(vec3f(0.0), vec3f(SKIN), p - cut.low) * smoothstep(vec3f(0.0), vec3f(SKIN), cut.high - p);
-    let behind = smoothstep(0.0, SKIN, cut.plane.w - dot(cut.plane.xyz, p));
+    let inside = smoothstep(vec3f(0.0), vec3f(FADE_DEPTH_VOXELS), p - cut.low) * smoothstep(vec3f(0.0), vec3f(FADE_DEPTH_VOXELS), cut.high - p);
+    let behind = smoothstep(0.0, FADE_DEPTH_VOXELS, cut.plane.w - dot(cut.plane.xyz, p));
     return inside.x * inside.y * inside.z * behind;
 }
 
 // Restricts a range of slabs (first and last) to those that can overlap the span.
-fn slabs_within(frame: SheetFrame, span: vec2f, slabs: vec2i) -> vec2i {
+fn slabs_within(frame: SheetFrameUniform, span: vec2f, slabs: vec2i) -> vec2i {
     if (!CUT) {
         return slabs;
     }
@@ -70,7 +70,7 @@ fn slabs_within(frame: SheetFrame, span: vec2f, slabs: vec2i) -> vec2i {
 }
 
 // Whether a point lies inside the region.
-fn is_within(cut: Cut, p: vec3f) -> bool {
+fn is_inside_cut(cut: CutUniform, p: vec3f) -> bool {
     return !CUT || (all(p >= cut.low) && all(p <= cut.high) && dot(cut.plane.xyz, p) <= cut.plane.w);
 }
 
@@ -85,7 +85,7 @@ fn blurred_edge(distance: f32) -> f32 {
 // Gradient, in index space, of the faces at which data end or are cut: that of a solid that ends there, reconstructed
 // with a B-spline stretched 2^level times. Data behind the face would only add noise to its direction, and there are
 // none outside the grid.
-fn face_gradient(cut: Cut, p: vec3f, level: f32) -> vec3f {
+fn face_gradient(cut: CutUniform, p: vec3f, level: f32) -> vec3f {
 #if FACES
 #else
     if (!CUT) {

@@ -11,15 +11,15 @@
 fn index_gradient(p: vec3f, level: f32) -> vec3f {
     let h = exp2(level);
     return vec3f(
-        slope_along(p, vec3f(h, 0.0, 0.0), level),
-        slope_along(p, vec3f(0.0, h, 0.0), level),
-        slope_along(p, vec3f(0.0, 0.0, h), level),
+        derivative_along(p, vec3f(h, 0.0, 0.0), level),
+        derivative_along(p, vec3f(0.0, h, 0.0), level),
+        derivative_along(p, vec3f(0.0, 0.0, h), level),
     ) / h;
 }
 
 // Pyramid level of the normals for kernels stretched to `level`. PRECLASSIFY: labels change abruptly between voxels,
 // and look like stairs from nearby; a kernel twice as wide smooths their slope.
-fn level_of_normals(level: f32) -> f32 {
+fn normal_level(level: f32) -> f32 {
 #if PRECLASSIFY
     return min(level + 1.0, MAX_STRETCH_LEVEL);
 #else
@@ -28,7 +28,7 @@ fn level_of_normals(level: f32) -> f32 {
 }
 
 // Derivative of the density along `step`, per step.
-fn slope_along(p: vec3f, step: vec3f, level: f32) -> f32 {
+fn derivative_along(p: vec3f, step: vec3f, level: f32) -> f32 {
     let near = pyramid(p + step, level) - pyramid(p - step, level);
     let far = pyramid(p + 2.0 * step, level) - pyramid(p - 2.0 * step, level);
     return (8.0 * near - far) / 12.0;

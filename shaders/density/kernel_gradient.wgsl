@@ -2,7 +2,7 @@
 #import "density/stored_gradient.wgsl"
 
 // Derivatives of the cubic B-spline's weights with respect to f (kernel.wgsl); they sum to 0.
-fn kernel_slopes(f: f32) -> vec4f {
+fn kernel_derivatives(f: f32) -> vec4f {
     let g = 1.0 - f;
     return vec4f(-0.5 * g * g, f * (1.5 * f - 2.0), g * (2.0 - 1.5 * g), 0.5 * f * f);
 }
@@ -15,9 +15,9 @@ fn gradient_by_kernel(p: vec3f) -> vec3f {
     let wy = kernel_weights(f.y);
     let wz = kernel_weights(f.z);
     return vec3f(
-        weighed(cell, kernel_slopes(f.x), wy, wz),
-        weighed(cell, wx, kernel_slopes(f.y), wz),
-        weighed(cell, wx, wy, kernel_slopes(f.z)),
+        weighted_sum(cell, kernel_derivatives(f.x), wy, wz),
+        weighted_sum(cell, wx, kernel_derivatives(f.y), wz),
+        weighted_sum(cell, wx, wy, kernel_derivatives(f.z)),
     );
 }
 
@@ -26,7 +26,7 @@ fn stretched_gradient(p: vec3f, level: f32) -> vec3f {
     if (!STRETCH) {
         return gradient_by_kernel(p);
     }
-    let blurred = volume_slope(p, max(level, 1.0));
+    let blurred = volume_gradient(p, max(level, 1.0));
     if (level >= 1.0) {
         return blurred;
     }
@@ -34,10 +34,10 @@ fn stretched_gradient(p: vec3f, level: f32) -> vec3f {
 }
 
 // Gradient of the volume in index space. KERNEL_GRADIENTS: analytic gradient of the kernel.
-fn slope_at(p: vec3f, level: f32) -> vec3f {
+fn gradient_at(p: vec3f, level: f32) -> vec3f {
 #if KERNEL_GRADIENTS
     return stretched_gradient(p, level);
 #else
-    return volume_slope(p, level);
+    return volume_gradient(p, level);
 #endif
 }

@@ -38,25 +38,25 @@ fn lighting_presence(p: vec3f, level: f32) -> f32 {
 }
 
 // Extinction for a density or a relative extinction, interpolated in the table.
-fn extinction_between(density: f32) -> Left {
+fn interpolated_extinction(density: f32) -> Left {
     let at = table_entry(density);
-    return mix(extinction_of(lighting_table.entries[at.low]), extinction_of(lighting_table.entries[at.low + 1u]), Left(at.fraction));
+    return mix(entry_extinction(lighting_table.entries[at.low]), entry_extinction(lighting_table.entries[at.low + 1u]), Left(at.fraction));
 }
 
-fn met_extinction(met: Met) -> Left {
+fn lighting_extinction(met: Met) -> Left {
 #if PRECLASSIFY
 #if COLORED
-    return vec3f(extinction_between(met.r).r, extinction_between(met.g).r, extinction_between(met.b).r);
+    return vec3f(interpolated_extinction(met.r).r, interpolated_extinction(met.g).r, interpolated_extinction(met.b).r);
 #else
-    return extinction_between(met);
+    return interpolated_extinction(met);
 #endif
 #else
-    return extinction_between(met);
+    return interpolated_extinction(met);
 #endif
 }
 
 // Extinction from the nearest table entry, without interpolation.
-fn met_nearly(met: Met) -> Left {
+fn nearest_lighting_extinction(met: Met) -> Left {
 #if PRECLASSIFY
 #if COLORED
     // Tables of relative extinction have no colours.
@@ -69,6 +69,6 @@ fn met_nearly(met: Met) -> Left {
     return lighting_table.entries[nearest_entry(met)].a;
 #endif
 #else
-    return extinction_of(lighting_table.entries[nearest_entry(met)]);
+    return entry_extinction(lighting_table.entries[nearest_entry(met)]);
 #endif
 }

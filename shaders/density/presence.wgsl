@@ -9,12 +9,12 @@
 const EDGE_REACH = 1.5;
 
 // Lower bound for the presence by which sums are divided; with less presence nothing is visible.
-const LEAST_PRESENCE = 1e-4;
+const MIN_PRESENCE = 1e-4;
 
 #if FACES
 // Presence of the prefiltered kernel along each axis, for voxels 0, 1, 2 …, with its centre `depth` voxels inside the
 // edge before voxel 0; antisymmetric about ½ at the edge.
-fn prefiltered_shares(depth: vec3f) -> vec3f {
+fn prefiltered_axis_presence(depth: vec3f) -> vec3f {
     // Linear from 1/12 to 11/12 between the voxels beside the edge, and on to 0 and 1 at the next ones: a slope of
     // 1/12, plus the remainder to 5/6 in the middle.
     return 0.5 + 0.75 * clamp(depth, vec3f(-0.5), vec3f(0.5))
@@ -22,9 +22,9 @@ fn prefiltered_shares(depth: vec3f) -> vec3f {
 }
 
 // Presence of the current kernel along each axis. Branches would not save software drivers anything.
-fn shares_inside(depth: vec3f) -> vec3f {
+fn axis_presence(depth: vec3f) -> vec3f {
     if (KERNEL == KERNEL_PREFILTERED) {
-        return prefiltered_shares(depth);
+        return prefiltered_axis_presence(depth);
     }
     let away = abs(depth);
     var shares: vec3f;
@@ -50,13 +50,13 @@ fn shares_inside(depth: vec3f) -> vec3f {
 }
 
 // Presence of a kernel around an index-space point, stretched `width` times.
-fn presence(p: vec3f, dims: vec3f, width: f32) -> f32 {
+fn grid_presence(p: vec3f, dims: vec3f, width: f32) -> f32 {
     let before = p + 0.5;
     let behind = dims - 0.5 - p;
 #if FACES > 1
-    let shares = max(shares_inside(before / width) + shares_inside(behind / width) - 1.0, vec3f(0.0));
+    let shares = max(axis_presence(before / width) + axis_presence(behind / width) - 1.0, vec3f(0.0));
 #else
-    let shares = shares_inside(min(before, behind) / width);
+    let shares = axis_presence(min(before, behind) / width);
 #endif
     return shares.x * shares.y * shares.z;
 }
@@ -66,9 +66,9 @@ fn prefiltered_presence(p: vec3f, dims: vec3f, width: f32) -> f32 {
     let before = p + 0.5;
     let behind = dims - 0.5 - p;
 #if FACES > 1
-    let shares = max(prefiltered_shares(before / width) + prefiltered_shares(behind / width) - 1.0, vec3f(0.0));
+    let shares = max(prefiltered_axis_presence(before / width) + prefiltered_axis_presence(behind / width) - 1.0, vec3f(0.0));
 #else
-    let shares = prefiltered_shares(min(before, behind) / width);
+    let shares = prefiltered_axis_presence(min(before, behind) / width);
 #endif
     return shares.x * shares.y * shares.z;
 }

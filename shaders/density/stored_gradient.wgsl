@@ -7,9 +7,9 @@
 override GRADIENT_TEXTURE: bool = false;
 
 // Gradient of the volume in index space.
-fn volume_slope(p: vec3f, level: f32) -> vec3f {
+fn volume_gradient(p: vec3f, level: f32) -> vec3f {
     if (GRADIENT_TEXTURE) {
         return textureSampleLevel(gradients, clamped, (p + 4.5) * grid.pyramid_scale, level).xyz;
     }
-    return index_gradient(p, level_of_normals(level));
+    return index_gradient(p, normal_level(level));
 }

@@ -5,7 +5,7 @@
 #import "density/stored_presence.wgsl"
 #import "sheets/sheet_frame.wgsl"
 
-struct Grid {
+struct GridUniform {
     // Number of voxels along x, y and z.
     dims: vec3f,
     // Reach of samples, in cells beyond their own, from stretched kernels and quadrature points.
@@ -23,8 +23,8 @@ struct Grid {
 
 // Uniforms are copied before anything branches: behind a branch Mesa's software driver reads them lane by lane, with
 // some thirty instructions for each number.
-@group(1) @binding(0) var<uniform> bound_grid: Grid;
-var<private> grid: Grid;
+@group(1) @binding(0) var<uniform> bound_grid: GridUniform;
+var<private> grid: GridUniform;
 @group(1) @binding(1) var density_texture: texture_3d<f32>;
 // Density in r; presence in g where voxels are missing.
 @group(1) @binding(2) var pyramid_texture: texture_3d<f32>;
@@ -36,7 +36,7 @@ var<private> grid: Grid;
 @group(1) @binding(9) var presence_texture: texture_3d<f32>;
 
 // Channel of the pyramid that is gathered; with pre-classification each colour of light has its own extinction.
-override GATHERED: u32 = 0u;
+override EXTINCTION_CHANNEL: u32 = 0u;
 
 // Set if pixels are wider than voxels in any slab.
 override STRETCH: bool = false;
@@ -46,8 +46,8 @@ const TWO_POINT_OFFSET = 0.28867513;
 
 // Density from the pyramid of prefiltered volumes, in one fetch.
 fn pyramid(p: vec3f, level: f32) -> f32 {
-#if GATHERED
-    return textureSampleLevel(pyramid_texture, clamped, (p + 4.5) * grid.pyramid_scale, level)[GATHERED];
+#if EXTINCTION_CHANNEL
+    return textureSampleLevel(pyramid_texture, clamped, (p + 4.5) * grid.pyramid_scale, level)[EXTINCTION_CHANNEL];
 #else
     return textureSampleLevel(pyramid_texture, clamped, (p + 4.5) * grid.pyramid_scale, level).r;
 #endif
@@ -57,13 +57,13 @@ fn pyramid(p: vec3f, level: f32) -> f32 {
 fn density_by_kernel(p: vec3f) -> f32 {
     let cell = floor(p);
     let f = p - cell;
-    return weighed(cell, kernel_weights(f.x), kernel_weights(f.y), kernel_weights(f.z));
+    return weighted_sum(cell, kernel_weights(f.x), kernel_weights(f.y), kernel_weights(f.z));
 }
 
 // Σ over the 4³ voxels, from the one before `cell` on along each axis, of density × weights. The four weights of an
 // axis form two pairs of equal sign, and each pair is one linear fetch between its voxels: eight trilinear fetches
 // for 64 voxels.
-fn weighed(cell: vec3f, wx: vec4f, wy: vec4f, wz: vec4f) -> f32 {
+fn weighted_sum(cell: vec3f, wx: vec4f, wy: vec4f, wz: vec4f) -> f32 {
     let low = vec3f(wx.x + wx.y, wy.x + wy.y, wz.x + wz.y);
     let high = vec3f(wx.z + wx.w, wy.z + wy.w, wz.z + wz.w);
     // Texel centres: one voxel of border and half a texel.
@@ -81,7 +81,7 @@ fn weighed(cell: vec3f, wx: vec4f, wy: vec4f, wz: vec4f) -> f32 {
 }
 
 // Pyramid level for the kernel's stretch at a depth.
-fn kernel_level(frame: SheetFrame, depth: f32) -> f32 {
+fn kernel_level(frame: SheetFrameUniform, depth: f32) -> f32 {
     if (!STRETCH) {
         return 0.0;
     }
@@ -106,7 +106,7 @@ fn density(p: vec3f, level: f32) -> f32 {
 // Fraction of the kernel at a point that lies within the grid, stretched to a pyramid level.
 fn presence_in_grid(p: vec3f, level: f32) -> f32 {
 #if FACES
-    return presence(p, grid.dims, select(1.0, exp2(level), STRETCH));
+    return grid_presence(p, grid.dims, select(1.0, exp2(level), STRETCH));
 #else
     return 1.0;
 #endif
@@ -117,7 +117,7 @@ fn presence_at(p: vec3f, level: f32) -> f32 {
 #if MISSING
 #if PRECLASSIFY
     // With pre-classification the pyramid holds materials instead of presence.
-    return share_stored(textureSampleLevel(presence_texture, clamped, (p + 4.5) * grid.pyramid_scale, level));
+    return decode_presence(textureSampleLevel(presence_texture, clamped, (p + 4.5) * grid.pyramid_scale, level));
 #else
     // Together with a density from the pyramid at the same point this needs no additional fetch.
     return textureSampleLevel(pyramid_texture, clamped, (p + 4.5) * grid.pyramid_scale, level).g;
@@ -142,7 +142,7 @@ fn pyramid_presence(p: vec3f, level: f32) -> f32 {
 
 // Gradient of presence, in index space, where voxels are missing: precomputed central differences as wide as the
 // stretched kernel.
-fn presence_slope(p: vec3f, level: f32) -> vec3f {
+fn presence_gradient(p: vec3f, level: f32) -> vec3f {
 #if MISSING
     let changes = textureSampleLevel(presence_texture, clamped, (p + 4.5) * grid.pyramid_scale, level).gba;
     return changes * (0.5 * exp2(-level));
@@ -152,7 +152,7 @@ fn presence_slope(p: vec3f, level: f32) -> vec3f {
 }
 
 // Presence averaged over slab k, where the ray crosses it.
-fn slab_presence(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
+fn slab_presence(frame: SheetFrameUniform, ray: Ray, k: f32) -> f32 {
 #if FACES
     let depth = depth_of(frame, k);
     if (QUADRATURE == 2u) {
@@ -168,7 +168,7 @@ fn slab_presence(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
 }
 
 // Fraction of slab k within the grid, where the ray crosses it.
-fn slab_in_grid(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
+fn slab_in_grid(frame: SheetFrameUniform, ray: Ray, k: f32) -> f32 {
 #if MISSING
     let depth = depth_of(frame, k);
     let offset = select(0.0, TWO_POINT_OFFSET * frame.slab, QUADRATURE == 2u);
@@ -180,7 +180,7 @@ fn slab_in_grid(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
 }
 
 // Value of the sheet: density averaged over slab k, where the ray crosses it.
-fn slab_density(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
+fn slab_density(frame: SheetFrameUniform, ray: Ray, k: f32) -> f32 {
     let depth = depth_of(frame, k);
     if (QUADRATURE == 2u) {
         let near = depth - TWO_POINT_OFFSET * frame.slab;
@@ -192,7 +192,7 @@ fn slab_density(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
 }
 
 // First and last slab whose middle can contain material: the grid and two voxels around it.
-fn slabs_inside(frame: SheetFrame, ray: Ray) -> vec2i {
+fn slabs_inside(frame: SheetFrameUniform, ray: Ray) -> vec2i {
     let parallel_to = abs(ray.direction) < vec3f(1e-12);
     let direction = select(ray.direction, vec3f(1e-12), parallel_to);
     let a = (vec3f(-2.0) - ray.origin) / direction;

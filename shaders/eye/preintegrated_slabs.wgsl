@@ -11,13 +11,13 @@ const LAYER_STEPS = 4;
 
 // Optical depth of the last step below which a layer ends one step earlier: light varies little within a surface that
 // is opaque after a voxel, and more within softer material.
-const SOFT = 0.5;
+const SOFT_OPTICAL_DEPTH = 0.5;
 
 // Share of the ray from which the steps of a layer are counted: 16 of 255, too little to be shaded separately.
-const FAINT = 0.0625;
+const MIN_COUNTED_SHARE = 0.0625;
 
 // Optical depth of an empty step: a thousandth of the smallest that 8 bits can show.
-const EMPTY = 4e-6;
+const EMPTY_OPTICAL_DEPTH = 4e-6;
 
 // Integral of extinction over densities from 0 to a position in the table.
 fn extinction_integral(at: f32) -> f32 {
@@ -61,7 +61,7 @@ struct Layer {
 
 // Opacity-weighted mean depth in homogeneous material of optical depth τ, relative to its thickness: 1/τ − 1/(e^τ −
 // 1), within 0.011.
-fn mean_place(tau: f32) -> f32 {
+fn mean_depth_fraction(tau: f32) -> f32 {
     return (6.0 + tau) / (12.0 + tau * (4.0 + tau));
 }
 
@@ -85,7 +85,7 @@ fn with_step(layer: Layer, a: StepEnd, b: StepEnd, k: i32, length: f32) -> Layer
     let place = f32(k);
     return Layer(
         layer.share + by_front + by_back,
-        layer.places + by_front * (place + 0.5 * mean_place(front)) + by_back * (place + 0.5 + 0.5 * mean_place(back)),
+        layer.places + by_front * (place + 0.5 * mean_depth_fraction(front)) + by_back * (place + 0.5 + 0.5 * mean_depth_fraction(back)),
         layer.densities + by_front * 0.5 * (a.density + middle) + by_back * 0.5 * (middle + b.density),
         behind_back,
         front + back,
@@ -93,16 +93,16 @@ fn with_step(layer: Layer, a: StepEnd, b: StepEnd, k: i32, length: f32) -> Layer
 }
 
 // Colour and transmittance of a ray between two slabs of the frame, `inside.x` to `inside.y`.
-fn preintegrated_slabs(ray: Ray, span: vec2f, inside: vec2i) -> Seen {
-    let walk = walk_along(eye.frame, ray);
+fn preintegrated_slabs(ray: Ray, span: vec2f, inside: vec2i) -> RayResult {
+    let walk = cell_ray(eye.frame, ray);
     // A cut volume may end behind the middle of the last slab.
     let last = inside.y + select(0, 1, CUT);
     let step_length = eye.frame.slab * ray.obliquity;
     // Steps begin at the slab before the first that may be visible.
-    var k = next_seen(walk, inside.x, last) - 1;
+    var k = next_visible_slab(walk, inside.x, last) - 1;
     var before = StepEnd(0.0, 0.0, 0.0, 0.0);
     // Set while the density of slab k is unknown.
-    var has_leapt = true;
+    var has_skipped = true;
     var color = vec3f(0.0);
     var t = 1.0;
     loop {
@@ -113,22 +113,22 @@ fn preintegrated_slabs(ray: Ray, span: vec2f, inside: vec2i) -> Seen {
         var steps = 0;
         // All lanes of a vector wait for the slowest, but shading takes as long as several steps.
         loop {
-            let at = select(k + 1, k, has_leapt);
+            let at = select(k + 1, k, has_skipped);
             let end = step_end(ray, at);
             let slab = eye.frame.slab;
             let depth = depth_of(eye.frame, f32(at) - 0.5);
-            let length = select(step_length, 0.0, has_leapt) * share_within(span, depth, slab);
+            let length = select(step_length, 0.0, has_skipped) * slab_fraction_inside(span, depth, slab);
             layer = with_step(layer, before, end, at - 1, length);
-            let is_empty = layer.last_depth < EMPTY;
-            steps += select(0, 1, layer.share > FAINT);
+            let is_empty = layer.last_depth < EMPTY_OPTICAL_DEPTH;
+            steps += select(0, 1, layer.share > MIN_COUNTED_SHARE);
             k = at;
             before = end;
-            let seen = next_seen(walk, k + 1, last);
-            has_leapt = is_empty && seen > k + 1;
-            k = select(k, seen - 1, has_leapt);
+            let seen = next_visible_slab(walk, k + 1, last);
+            has_skipped = is_empty && seen > k + 1;
+            k = select(k, seen - 1, has_skipped);
             // Material behind a gap is shaded separately.
-            let is_whole = steps >= select(LAYER_STEPS, LAYER_STEPS - 1, layer.last_depth < SOFT);
-            if (is_whole || layer.left < eye.dark || k >= last || (is_empty && layer.share > 0.0)) {
+            let is_whole = steps >= select(LAYER_STEPS, LAYER_STEPS - 1, layer.last_depth < SOFT_OPTICAL_DEPTH);
+            if (is_whole || layer.left < eye.min_transmittance || k >= last || (is_empty && layer.share > 0.0)) {
                 break;
             }
         }
@@ -138,13 +138,13 @@ fn preintegrated_slabs(ray: Ray, span: vec2f, inside: vec2i) -> Seen {
             let dense = layer.densities / layer.share;
             let p = ray.origin + ray.direction * depth;
             let level = kernel_level(eye.frame, depth);
-            let slope = gradient_to_scene(eye.space, slope_at(p, level));
+            let slope = gradient_to_scene(eye.space, gradient_at(p, level));
             let found = SlabSample(classify(dense), dense, 1.0);
-            color += layer.share * lit_material(p, level, slope, presence_slope(p, level), found);
+            color += layer.share * shade_material(p, level, slope, presence_gradient(p, level), found);
         }
-        if (t < eye.dark) {
+        if (t < eye.min_transmittance) {
             break;
         }
     }
-    return Seen(color, t);
+    return RayResult(color, t);
 }

@@ -8,16 +8,16 @@ const THIN_SLABS = 4;
 
 // Share of the visible light above which a slab is divided. Larger values show a weave on steep surfaces; smaller
 // ones cost more without visible improvement.
-const MUCH = 0.125;
+const MAX_UNDIVIDED_SHARE = 0.125;
 
 // Safety factor for the change of density across a slab, relative to the gradient at its middle.
-const CURVED = 1.25;
+const GRADIENT_SAFETY = 1.25;
 
 // Colour and transmittance of a ray between two slabs of the frame, `inside.x` to `inside.y`.
-fn slabs_by_need(ray: Ray, span: vec2f, inside: vec2i) -> Seen {
-    let walk = walk_along(eye.frame, ray);
+fn adaptive_slabs(ray: Ray, span: vec2f, inside: vec2i) -> RayResult {
+    let walk = cell_ray(eye.frame, ray);
     let thick = f32(THIN_SLABS) * eye.frame.slab;
-    var k = next_seen(walk, inside.x, inside.y);
+    var k = next_visible_slab(walk, inside.x, inside.y);
     // Number of frame slabs in the next sample, and end of the slab that is being divided.
     var width = THIN_SLABS;
     var end = 0;
@@ -33,13 +33,13 @@ fn slabs_by_need(ray: Ray, span: vec2f, inside: vec2i) -> Seen {
         let depth = depth_of(eye.frame, middle);
         let p = ray.origin + ray.direction * depth;
         let level = kernel_level(eye.frame, depth);
-        let found = slab_seen(ray, span, middle, f32(width));
-        let slope = volume_slope(p, level);
+        let found = visible_slab_sample(ray, span, middle, f32(width));
+        let slope = volume_gradient(p, level);
         // Evaluated once: software drivers run both branches that need it.
-        let rising = presence_slope(p, level);
+        let rising = presence_gradient(p, level);
         var needed = width;
         if (width == THIN_SLABS) {
-            let change = 0.5 * CURVED * thick * abs(dot(slope, ray.direction));
+            let change = 0.5 * GRADIENT_SAFETY * thick * abs(dot(slope, ray.direction));
             let largest = largest_extinction(found.density - change, found.density + change);
             var share = t * (1.0 - exp(-largest * thick * ray.obliquity));
 #if MISSING
@@ -47,8 +47,8 @@ fn slabs_by_need(ray: Ray, span: vec2f, inside: vec2i) -> Seen {
             // Pre-classified materials already include presence.
 #else
             // Beside missing voxels density continues, but little or no material is present.
-            if (share > MUCH) {
-                let rise = 0.5 * CURVED * thick * abs(dot(rising, ray.direction));
+            if (share > MAX_UNDIVIDED_SHARE) {
+                let rise = 0.5 * GRADIENT_SAFETY * thick * abs(dot(rising, ray.direction));
                 let there = min(found.there + rise, 1.0);
                 share = t * (1.0 - exp(-there * largest * thick * ray.obliquity));
             }
@@ -56,25 +56,25 @@ fn slabs_by_need(ray: Ray, span: vec2f, inside: vec2i) -> Seen {
 #endif
             // Slabs that extend beyond the volume are divided, too.
             let is_whole = start >= inside.x && start + THIN_SLABS - 1 <= inside.y;
-            needed = select(1, width, is_whole && share <= MUCH);
+            needed = select(1, width, is_whole && share <= MAX_UNDIVIDED_SHARE);
             end = start + THIN_SLABS;
         }
         if (needed == width) {
             if (found.material.a > 0.0) {
                 let passed = exp(-found.material.a * f32(width) * eye.frame.slab * ray.obliquity);
-                color += t * (1.0 - passed) * lit_material(p, level, gradient_to_scene(eye.space, slope), rising, found);
+                color += t * (1.0 - passed) * shade_material(p, level, gradient_to_scene(eye.space, slope), rising, found);
                 t *= passed;
             }
             k = start + width;
         }
-        if (t < eye.dark) {
+        if (t < eye.min_transmittance) {
             break;
         }
-        k = next_seen(walk, k, inside.y);
+        k = next_visible_slab(walk, k, inside.y);
         width = select(needed, THIN_SLABS, k >= end);
         if (k > inside.y) {
             break;
         }
     }
-    return Seen(color, t);
+    return RayResult(color, t);
 }

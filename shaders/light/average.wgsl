@@ -2,7 +2,7 @@
 // sum, and after the last batch stores the mean. One thread per voxel.
 #import "common/listed_bricks.wgsl"
 
-struct Average {
+struct AverageUniform {
     dims: vec3u,
     // Number of bricks listed for this dispatch.
     bricks: u32,
@@ -13,8 +13,8 @@ struct Average {
     pad2: u32,
 }
 
-@group(0) @binding(0) var<uniform> bound_average: Average;
-var<private> average: Average;
+@group(0) @binding(0) var<uniform> bound_average: AverageUniform;
+var<private> average: AverageUniform;
 @group(0) @binding(1) var<storage, read> bricks: array<vec4u>;
 // Attenuation volumes of the points in the batch.
 @group(0) @binding(2) var point_0: texture_3d<f32>;
@@ -27,7 +27,7 @@ var<private> average: Average;
 @group(0) @binding(8) var attenuation: texture_storage_3d<TARGET_FORMAT, write>;
 
 // Number of points in the batch, up to four; flags for the first and the last batch.
-override ADDED: u32 = 1u;
+override BATCH_SIZE: u32 = 1u;
 override IS_FIRST: bool = true;
 override IS_LAST: bool = true;
 
@@ -43,13 +43,13 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
         return;
     }
     var sum = textureLoad(point_0, voxel, 0).r;
-    if (ADDED > 1u) {
+    if (BATCH_SIZE > 1u) {
         sum += textureLoad(point_1, voxel, 0).r;
     }
-    if (ADDED > 2u) {
+    if (BATCH_SIZE > 2u) {
         sum += textureLoad(point_2, voxel, 0).r;
     }
-    if (ADDED > 3u) {
+    if (BATCH_SIZE > 3u) {
         sum += textureLoad(point_3, voxel, 0).r;
     }
     if (!IS_FIRST) {

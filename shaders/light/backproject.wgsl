@@ -9,8 +9,8 @@
 #import "sheets/sheet_frame.wgsl"
 #import "common/listed_bricks.wgsl"
 
-struct Backprojection {
-    frame: SheetFrame,
+struct BackprojectionUniform {
+    frame: SheetFrameUniform,
     // Index space to light axes at the anchor, x and y in pixels of the anchor plane, z in scene units: three rows of
     // an affine map.
     light_from_index_x: vec4f,
@@ -36,8 +36,8 @@ struct Backprojection {
     pad1: f32,
 }
 
-@group(0) @binding(0) var<uniform> bound_view: Backprojection;
-var<private> view: Backprojection;
+@group(0) @binding(0) var<uniform> bound_view: BackprojectionUniform;
+var<private> view: BackprojectionUniform;
 @group(0) @binding(1) var<storage, read> bricks: array<vec4u>;
 // Ring with four slabs per texel.
 @group(0) @binding(2) var ring: texture_2d_array<f32>;
@@ -55,17 +55,17 @@ const MAX_KERNEL_PIXELS = 4.0;
 
 // Deposits of the four slabs 4·layer … 4·layer + 3.
 fn four_sheets(pixel: vec2f, layer: i32) -> vec4f {
-    return textureSampleLevel(ring, ring_sampler, (pixel + 0.5) * view.ring_scale, in_ring(layer, view.layers), 0.0);
+    return textureSampleLevel(ring, ring_sampler, (pixel + 0.5) * view.ring_scale, ring_layer(layer, view.layers), 0.0);
 }
 
 // Weights of four consecutive slabs, the first at `place` in its texel: split into those of this texel and of the
 // next.
-fn in_texel(weights: vec4f, place: i32) -> vec4f {
+fn weights_in_texel(weights: vec4f, place: i32) -> vec4f {
     let moved = select(vec4f(0.0, weights.xyz), vec4f(0.0, 0.0, weights.xy), place == 2);
     return select(select(moved, vec4f(0.0, 0.0, 0.0, weights.x), place == 3), weights, place == 0);
 }
 
-fn in_next_texel(weights: vec4f, place: i32) -> vec4f {
+fn weights_in_next_texel(weights: vec4f, place: i32) -> vec4f {
     let moved = select(vec4f(weights.w, 0.0, 0.0, 0.0), vec4f(weights.zw, 0.0, 0.0), place == 2);
     return select(select(moved, vec4f(weights.yzw, 0.0), place == 3), vec4f(0.0), place == 0);
 }
@@ -80,8 +80,8 @@ fn gather_narrow(pixel: vec2f, slab: f32) -> f32 {
     let layer = first >> 2u;
     if (KERNEL == KERNEL_PREFILTERED) {
         let wz = vec4f(0.0, 1.0 - f.z, f.z, 0.0);
-        return dot(in_texel(wz, place), four_sheets(pixel, layer))
-            + dot(in_next_texel(wz, place), four_sheets(pixel, layer + 1));
+        return dot(weights_in_texel(wz, place), four_sheets(pixel, layer))
+            + dot(weights_in_next_texel(wz, place), four_sheets(pixel, layer + 1));
     }
     let wx = kernel_weights(f.x);
     let wy = kernel_weights(f.y);
@@ -95,11 +95,11 @@ fn gather_narrow(pixel: vec2f, slab: f32) -> f32 {
     let next = layer + 1;
     let far = low.y * (low.x * four_sheets(vec2f(a.x, a.y), next) + high.x * four_sheets(vec2f(b.x, a.y), next))
         + high.y * (low.x * four_sheets(vec2f(a.x, b.y), next) + high.x * four_sheets(vec2f(b.x, b.y), next));
-    return dot(in_texel(wz, place), near) + dot(in_next_texel(wz, place), far);
+    return dot(weights_in_texel(wz, place), near) + dot(weights_in_next_texel(wz, place), far);
 }
 
 // Two neighbouring pixels as one linear fetch: x is the position between them, y the sum of their weights.
-fn pair(first: i32, count: i32, at: f32, width: f32) -> vec2f {
+fn pixel_pair(first: i32, count: i32, at: f32, width: f32) -> vec2f {
     let a = select(0.0, kernel_at((f32(first) - at) / width), first >= 0 && first < count);
     let b = select(0.0, kernel_at((f32(first + 1) - at) / width), first + 1 >= 0 && first + 1 < count);
     return vec2f(b / max(a + b, 1e-20), a + b);
@@ -145,9 +145,9 @@ fn gather_wide(pixel: vec2f, slab: f32, pixels: f32, slabs: f32) -> f32 {
         let z2 = slab_weights(k + 8, size.z, slab, slabs);
         let along = dot(z0 + z1 + z2, vec4f(1.0));
         for (var i = first.x; i <= last.x; i += 2) {
-            let x = pair(i, size.x, pixel.x, pixels);
+            let x = pixel_pair(i, size.x, pixel.x, pixels);
             for (var j = first.y; j <= last.y; j += 2) {
-                let y = pair(j, size.y, pixel.y, pixels);
+                let y = pixel_pair(j, size.y, pixel.y, pixels);
                 let at = vec2f(f32(i) + x.x, f32(j) + y.x);
                 let weight = x.y * y.y;
                 weights += weight * along;
@@ -198,7 +198,7 @@ fn footprint_of(voxel: vec3u) -> Footprint {
 }
 
 // Voxel that the chunk completes, and the cells of its brick that the lane has yet to process.
-struct Due {
+struct CompletedVoxel {
     is_due: bool,
     left: vec2u,
     voxel: vec3u,
@@ -206,9 +206,9 @@ struct Due {
 }
 
 // Voxel of the lane in the next of its cells that the chunk completes.
-fn next_due(brick: u32, lane: u32, cells: vec2u) -> Due {
+fn next_completed_voxel(brick: u32, lane: u32, cells: vec2u) -> CompletedVoxel {
     let in_cell = vec3u(lane, lane >> 1u, lane >> 2u) & vec3u(1u);
-    var next: Due;
+    var next: CompletedVoxel;
     next.left = cells;
     loop {
         let left = next.left;
@@ -219,7 +219,7 @@ fn next_due(brick: u32, lane: u32, cells: vec2u) -> Due {
         let cell = select(firstTrailingBit(left.y) + 32u, firstTrailingBit(left.x), low);
         next.left = select(vec2u(left.x, left.y & (left.y - 1u)), vec2u(left.x & (left.x - 1u), left.y), low);
         let place = vec3u(cell, cell >> 2u, cell >> 4u) & vec3u(3u);
-        next.voxel = unpacked(brick) * BRICK_EDGE + place * CELL_EDGE + in_cell;
+        next.voxel = unpack_coordinates(brick) * BRICK_EDGE + place * CELL_EDGE + in_cell;
         let found = footprint_of(next.voxel);
         next.found = found;
         next.is_due = found.is_seen && found.final_slab >= i32(view.begin) && found.final_slab < i32(view.end);
@@ -247,7 +247,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
     let brick = bricks[listed];
     // Mask with one bit set in every LANES / 8 bits.
     let every = 0xffffffffu / ((1u << (LANES / CELL_VOXELS)) - 1u);
-    var next = next_due(brick.x, lane, brick.yz & vec2u(every << (lane / CELL_VOXELS)));
+    var next = next_completed_voxel(brick.x, lane, brick.yz & vec2u(every << (lane / CELL_VOXELS)));
     // Software drivers run a loop's body to its end before they test if any lane is active, so breaks are placed at
     // the end, not in the middle.
     loop {
@@ -265,7 +265,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
             value = gather_narrow(found.pixel, found.slab);
         }
         textureStore(attenuation, next.voxel, vec4f(value));
-        next = next_due(brick.x, lane, next.left);
+        next = next_completed_voxel(brick.x, lane, next.left);
         if (!next.is_due) {
             break;
         }

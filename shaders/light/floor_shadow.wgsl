@@ -3,7 +3,7 @@
 // first and the last view have to visit the whole map.
 #import "sheets/march.wgsl"
 
-struct FloorShadow {
+struct FloorShadowUniform {
     // Centre of texel (0, 0), and the steps to the next texel along both edges, in scene space.
     origin: vec3f,
     size: u32,
@@ -29,8 +29,8 @@ struct FloorShadow {
     first_texel: vec2u,
 }
 
-@group(0) @binding(1) var<uniform> bound_floor_map: FloorShadow;
-var<private> floor_map: FloorShadow;
+@group(0) @binding(1) var<uniform> bound_floor_map: FloorShadowUniform;
+var<private> floor_map: FloorShadowUniform;
 // Missing light, summed over the previous views.
 @group(0) @binding(2) var<storage, read_write> sums: array<f32>;
 @group(0) @binding(5) var shadow: texture_storage_3d<STORAGE_FORMAT, write>;
@@ -40,11 +40,11 @@ override IS_FIRST: bool = true;
 override IS_LAST: bool = true;
 
 // Transmittance behind the last slab; beside the sheets light is not attenuated.
-fn behind(pixel: vec2f) -> f32 {
+fn transmittance_behind(pixel: vec2f) -> f32 {
     let size = vec2f(march.frame.size);
     let is_inside = all(pixel >= vec2f(0.0)) && all(pixel < size);
     let at = vec2u(clamp(pixel, vec2f(0.0), size - 1.0));
-    return select(unattenuated(pixel), transmittance[at.y * march.frame.size.x + at.x], is_inside);
+    return select(cone_light(pixel), transmittance[at.y * march.frame.size.x + at.x], is_inside);
 }
 
 @compute @workgroup_size(8, 8)
@@ -66,8 +66,8 @@ fn main(@builtin(global_invocation_id) global: vec3u) {
     let pixel = across / max(spread, 1e-3) - floor_map.first_pixel;
     let low = floor(pixel);
     let f = pixel - low;
-    let near = mix(behind(low), behind(low + vec2f(1.0, 0.0)), f.x);
-    let far = mix(behind(low + vec2f(0.0, 1.0)), behind(low + vec2f(1.0, 1.0)), f.x);
+    let near = mix(transmittance_behind(low), transmittance_behind(low + vec2f(1.0, 0.0)), f.x);
+    let far = mix(transmittance_behind(low + vec2f(0.0, 1.0)), transmittance_behind(low + vec2f(1.0, 1.0)), f.x);
     let at = id.y * floor_map.size + id.x;
     var missing = select(0.0, 1.0 - select(0.0, mix(near, far, f.y), is_lit), is_owned);
     if (!IS_FIRST) {

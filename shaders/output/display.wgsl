@@ -9,5 +9,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (any(id.xy >= textureDimensions(shown))) {
         return;
     }
-    textureStore(shown, id.xy, shown_color(id.xy));
+    textureStore(shown, id.xy, display_color(id.xy));
 }

@@ -21,6 +21,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (LINEAR) {
         textureStore(shown, id.xy, linear_light(id.xy));
     } else {
-        textureStore(shown, id.xy, shown_color(id.xy));
+        textureStore(shown, id.xy, display_color(id.xy));
     }
 }

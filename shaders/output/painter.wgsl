@@ -13,7 +13,7 @@ struct Corner {
 }
 
 @vertex
-fn corner(@builtin(vertex_index) index: u32) -> Corner {
+fn triangle_corner(@builtin(vertex_index) index: u32) -> Corner {
     // Half of a square with twice the viewport's edges.
     let place = 2.0 * vec2f(f32(index & 1u), f32(index >> 1u));
     return Corner(vec4f(2.0 * place.x - 1.0, 1.0 - 2.0 * place.y, 0.0, 1.0), place);
@@ -21,7 +21,7 @@ fn corner(@builtin(vertex_index) index: u32) -> Corner {
 
 // Loaded, not sampled: 32-bit floats are not filterable on all adapters.
 @fragment
-fn painted(at: Corner) -> @location(0) vec4f {
+fn paint_pixel(at: Corner) -> @location(0) vec4f {
     let size = textureDimensions(picture);
     let texel = textureLoad(picture, min(vec2u(at.place * vec2f(size)), size - 1u), 0);
     if (LINEAR_TARGET) {

@@ -1,7 +1,7 @@
 // Display of linear, premultiplied light: average of a pixel's samples, tone map, background, sRGB.
 #import "output/srgb.wgsl"
 
-struct Display {
+struct DisplayUniform {
     // Background colours at the top and the bottom, in sRGB.
     top: vec4f,
     bottom: vec4f,
@@ -22,8 +22,8 @@ struct Display {
     floor_exposure: f32,
 }
 
-@group(0) @binding(0) var<uniform> bound_display: Display;
-var<private> display: Display;
+@group(0) @binding(0) var<uniform> bound_display: DisplayUniform;
+var<private> display: DisplayUniform;
 @group(0) @binding(1) var picture: texture_2d<f32>;
 // Light of the floor, premultiplied as well.
 @group(0) @binding(3) var floor_light: texture_2d<f32>;
@@ -36,7 +36,7 @@ const SHOULDER = 0.8;
 
 // Neutral tone map: identity up to the shoulder. Above it the largest component approaches 1 with a continuous slope,
 // 1 − w²/(peak − 0.8 + w) with w = 0.2, and the others keep their ratio to it.
-fn neutral(color: vec3f) -> vec3f {
+fn neutral_tone_map(color: vec3f) -> vec3f {
     let peak = max(max(color.r, color.g), color.b);
     let w = 1.0 - SHOULDER;
     let compressed = 1.0 - w * w / (max(peak, SHOULDER) - SHOULDER + w);
@@ -65,7 +65,7 @@ fn pixel_light(pixel: vec2u) -> vec4f {
 
 // Ordered dither, in steps: an 8 × 8 pattern (Bayer 1973) over the whole picture, in which each of 64 offsets between
 // −½ and ½ appears once. The bits of x xor y and of y, interleaved in reverse.
-fn ordered(place: vec2u) -> f32 {
+fn ordered_dither(place: vec2u) -> f32 {
     let a = place.x ^ place.y;
     let b = place.y;
     let bits = ((a & 1u) << 5u) | ((b & 1u) << 4u) | ((a & 2u) << 2u) | ((b & 2u) << 1u) | ((a & 4u) >> 1u) | ((b & 4u) >> 2u);
@@ -76,14 +76,14 @@ fn ordered(place: vec2u) -> f32 {
 fn background_at(pixel: vec2u) -> vec3f {
     let place = vec2f(pixel) + vec2f(display.first_column, display.first_row);
     let background = mix(display.top.rgb, display.bottom.rgb, (place.y + 0.5) / display.rows);
-    return max(background + ordered(vec2u(place)) * display.dither_step, vec3f(0.0));
+    return max(background + ordered_dither(vec2u(place)) * display.dither_step, vec3f(0.0));
 }
 
 // Display colours of a pixel, with straight alpha if the background is left out.
-fn shown_color(pixel: vec2u) -> vec4f {
+fn display_color(pixel: vec2u) -> vec4f {
     let light = pixel_light(pixel);
     let straight = light.rgb / max(light.a, 1e-6);
-    let mapped = select(neutral(straight), clamp(straight, vec3f(0.0), vec3f(1.0)), display.clip != 0u);
+    let mapped = select(neutral_tone_map(straight), clamp(straight, vec3f(0.0), vec3f(1.0)), display.clip != 0u);
     // Uniforms are not used as branch conditions: Mesa's software driver would compile each shader again for their
     // values, for every dispatch, and keep it.
     let alone = vec4f(srgb_from_linear(select(vec3f(0.0), mapped, light.a > 0.0)), light.a);

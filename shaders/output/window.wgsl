@@ -11,7 +11,7 @@ override LINEAR_TARGET: bool = false;
 @group(0) @binding(1) var picture_sampler: sampler;
 
 // Encoded shift of pictures that are not shifted (src/gpu/output/window.rs).
-const MOVED_BY_NOTHING = 32768;
+const UNSHIFTED = 32768;
 
 struct Corner {
     @builtin(position) position: vec4f,
@@ -22,7 +22,7 @@ struct Corner {
 }
 
 @vertex
-fn corner(@builtin(vertex_index) index: u32, @builtin(instance_index) number: u32) -> Corner {
+fn triangle_corner(@builtin(vertex_index) index: u32, @builtin(instance_index) number: u32) -> Corner {
     // Half of a square with twice the viewport's edges.
     let place = 2.0 * vec2f(f32(index & 1u), f32(index >> 1u));
     return Corner(vec4f(2.0 * place.x - 1.0, 1.0 - 2.0 * place.y, 0.0, 1.0), place, number);
@@ -38,15 +38,15 @@ fn for_target(srgb: vec3f) -> vec3f {
 // Picture of opaque pixels, drawn with a uniform opacity. The low byte of the number is the opacity in 255ths; the
 // bits above are the shift to the right in pixels, offset by 32768.
 @fragment
-fn shown(at: Corner) -> @location(0) vec4f {
+fn draw_picture(at: Corner) -> @location(0) vec4f {
     let opacity = f32(at.number & 255u) / 255.0;
-    let moved = f32(i32(at.number >> 8u) - MOVED_BY_NOTHING) / f32(textureDimensions(picture).x);
+    let moved = f32(i32(at.number >> 8u) - UNSHIFTED) / f32(textureDimensions(picture).x);
     let place = at.place - vec2f(moved, 0.0);
     return vec4f(for_target(textureSampleLevel(picture, picture_sampler, place, 0.0).rgb) * opacity, opacity);
 }
 
 // Uniform colour; the number is 0xBBGGRR.
 @fragment
-fn filled(at: Corner) -> @location(0) vec4f {
+fn draw_fill(at: Corner) -> @location(0) vec4f {
     return vec4f(for_target(unpack4x8unorm(at.number).rgb), 1.0);
 }

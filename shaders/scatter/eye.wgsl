@@ -15,8 +15,8 @@
 // Takes gradients from neighbouring sheets.
 override SHEET_GRADIENTS: bool = true;
 
-fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> Left {
-    return near_or_looked_up(light, volume, surface, towards);
+fn attenuation_at(light: LightUniform, volume: texture_3d<f32>, surface: Surface, towards: LightDirection) -> Left {
+    return shadowed_light(light, volume, surface, towards);
 }
 
 // Fraction of the kernels within the grid where a ray crosses a sheet. For a slice of voxels only the other two axes
@@ -40,16 +40,16 @@ fn sheet_presence(ray: Ray, k: i32) -> f32 {
 }
 
 // Value of a sheet at a pixel: the mean over the voxels that exist; 0 before the first sheet and behind the last.
-fn sheet(pixel: vec2i, k: i32) -> f32 {
+fn sheet_value(pixel: vec2i, k: i32) -> f32 {
     let last = i32(scatter.sheet_count) - 1;
     let known = clamp(k, 0, last);
     let at = sheet_index(vec2u(pixel), u32(known));
 #if PRECLASSIFY
     // Extinction, for pre-classified voxels.
-    let found = f32(atomicLoad(&sheets[channel_index(at, 4u)])) / UNIT;
+    let found = f32(atomicLoad(&sheets[channel_index(at, 4u)])) / FIXED_POINT_ONE;
 #else
     let there = sheet_in_grid(ray_of(eye.frame, vec2f(pixel)), known);
-    let found = f32(atomicLoad(&sheets[at])) / UNIT / max(there, LEAST_PRESENCE);
+    let found = f32(atomicLoad(&sheets[at])) / FIXED_POINT_ONE / max(there, MIN_PRESENCE);
 #endif
     return select(0.0, found, (k >= 0) & (k <= last));
 }
@@ -58,7 +58,7 @@ fn sheet(pixel: vec2i, k: i32) -> f32 {
 fn material_of(pixel: vec2i, k: i32) -> vec4f {
     let there = sheet_presence(ray_of(eye.frame, vec2f(pixel)), k);
     if (SPLAT != SPLAT_MATERIAL) {
-        let material = classify(sheet(pixel, k));
+        let material = classify(sheet_value(pixel, k));
         return vec4f(material.rgb, material.a * there);
     }
     let at = sheet_index(vec2u(pixel), u32(k));
@@ -67,10 +67,10 @@ fn material_of(pixel: vec2i, k: i32) -> vec4f {
         f32(atomicLoad(&sheets[channel_index(at, 2u)])),
         f32(atomicLoad(&sheets[channel_index(at, 3u)])),
         f32(atomicLoad(&sheets[channel_index(at, 4u)])),
-    ) / UNIT;
+    ) / FIXED_POINT_ONE;
     // Neighbours stand in for missing voxels, but not outside the grid.
     let in_grid = sheet_in_grid(ray_of(eye.frame, vec2f(pixel)), k);
-    let share = select(1.0, there / max(in_grid, LEAST_PRESENCE), MISSING);
+    let share = select(1.0, there / max(in_grid, MIN_PRESENCE), MISSING);
     return vec4f(sums.rgb / max(sums.a, 1e-20), sums.a * scatter.extinction_unit * share);
 }
 
@@ -79,10 +79,10 @@ fn gradient_between_sheets(pixel: vec2i, k: i32, met: Crossing) -> vec3f {
     let low = max(pixel - eye.gradient_pixels, vec2i(0));
     let high = min(pixel + eye.gradient_pixels, last);
     let reach = vec2f(max(high - low, vec2i(1)));
-    let across = (sheet(vec2i(high.x, pixel.y), k) - sheet(vec2i(low.x, pixel.y), k)) / reach.x;
-    let down = (sheet(vec2i(pixel.x, high.y), k) - sheet(vec2i(pixel.x, low.y), k)) / reach.y;
+    let across = (sheet_value(vec2i(high.x, pixel.y), k) - sheet_value(vec2i(low.x, pixel.y), k)) / reach.x;
+    let down = (sheet_value(vec2i(pixel.x, high.y), k) - sheet_value(vec2i(pixel.x, low.y), k)) / reach.y;
     let slabs = eye.gradient_slabs;
-    let deep = (sheet(pixel, k + slabs) - sheet(pixel, k - slabs)) / (2.0 * f32(slabs) * met.thickness);
+    let deep = (sheet_value(pixel, k + slabs) - sheet_value(pixel, k - slabs)) / (2.0 * f32(slabs) * met.thickness);
     let axis = select(scatter.axis, vec3f(0.0), ORDER == ORDER_IMAGE_ALIGNED);
     return gradient_of_sheets(vec2f(pixel), met.depth, vec3f(across, down, deep), axis);
 }
@@ -107,21 +107,21 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let brick = brick_with_material(p);
     // Set for points in front of a perspective eye.
     let in_front = 1.0 + met.depth * eye.frame.inverse_distance > 1e-3;
-    if (material.a > 0.0 && left >= eye.dark && brick.x >= 0 && in_front) {
+    if (material.a > 0.0 && left >= eye.min_transmittance && brick.x >= 0 && in_front) {
         // Sums are complete only near visible bricks.
         if (i32(textureLoad(distances, brick, 0).r) <= eye.dilation) {
             let level = stretch_level(eye.frame, met.depth);
-            let density = sheet(pixel, k);
-            let share = share_within(span_within(eye.seen, ray), met.depth, met.thickness);
+            let density = sheet_value(pixel, k);
+            let share = slab_fraction_inside(span_within(eye.visible_cut, ray), met.depth, met.thickness);
             let opacity = 1.0 - exp(-share * material.a * met.thickness * ray.obliquity);
             var slope: vec3f;
             if (SHEET_GRADIENTS) {
                 slope = gradient_between_sheets(pixel, k, met);
             } else {
-                slope = gradient_to_scene(eye.space, volume_slope(p, level));
+                slope = gradient_to_scene(eye.space, volume_gradient(p, level));
             }
-            slope += face_slope(p, level, density, presence_slope(p, level));
-            let rgb = shade(Sampled(p, slope, density, level), material.rgb);
+            slope += face_slope(p, level, density, presence_gradient(p, level));
+            let rgb = shade(VolumeSample(p, slope, density, level), material.rgb);
             rays[at] = before + left * opacity * vec4f(rgb, 1.0);
         }
     }

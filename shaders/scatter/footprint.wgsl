@@ -91,10 +91,10 @@ struct Box {
 fn pixels_under(at: vec3f) -> Box {
     // Projected at the nearest and at the furthest depth of the kernel.
     let spread = scatter.frame.inverse_distance;
-    let near = max(1.0 + (at.z - scatter.half.z) * spread, 1e-6);
-    let far = max(1.0 + (at.z + scatter.half.z) * spread, 1e-6);
-    let low = at.xy - scatter.half.xy;
-    let high = at.xy + scatter.half.xy;
+    let near = max(1.0 + (at.z - scatter.half_extents.z) * spread, 1e-6);
+    let far = max(1.0 + (at.z + scatter.half_extents.z) * spread, 1e-6);
+    let low = at.xy - scatter.half_extents.xy;
+    let high = at.xy + scatter.half_extents.xy;
     return Box(
         max(ceil(min(low / near, low / far)), vec2f(0.0)),
         min(floor(max(high / near, high / far)), vec2f(scatter.frame.size) - 1.0),

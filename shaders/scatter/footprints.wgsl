@@ -9,7 +9,7 @@
 #import "common/listed_bricks.wgsl"
 
 // Phase of a dispatch: position, in the slice, of the voxels that it composites in every `stride`-th brick.
-struct Phase {
+struct FootprintPhaseUniform {
     // Position within a brick.
     u: u32,
     v: u32,
@@ -30,8 +30,8 @@ struct Phase {
 @group(0) @binding(5) var<storage, read_write> splats: atomic<u32>;
 // Accumulated colour and opacity of each ray.
 @group(1) @binding(8) var<storage, read_write> rays: array<vec4f>;
-@group(3) @binding(0) var<uniform> bound_phase: Phase;
-var<private> phase: Phase;
+@group(3) @binding(0) var<uniform> bound_phase: FootprintPhaseUniform;
+var<private> phase: FootprintPhaseUniform;
 
 // Density of a voxel; the border value outside the grid.
 fn density_of(place: vec3i) -> f32 {
@@ -63,7 +63,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let listed = bricks[scatter.first + id.x];
-    let brick = unpacked(listed.x);
+    let brick = unpack_coordinates(listed.x);
     // The two axes of the slice.
     let along = vec3u(scatter.axis);
     let u_axis = select(vec3u(1u, 0u, 0u), vec3u(0u, 1u, 0u), along.x == 1u);
@@ -79,14 +79,14 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let centre = vec3f(voxel);
-    if (!is_within(eye.seen, centre)) {
+    if (!is_inside_cut(eye.visible_cut, centre)) {
         return;
     }
     // The blur leaves at least (10/12)³ = 0.58 of an existing voxel, and at most the rest of a missing one.
     if (MISSING && presence_at(centre, 0.0) < 0.5) {
         return;
     }
-    let at = locate(centre);
+    let at = project_to_sheets(centre);
     let box = pixels_under(at);
     // Behind a perspective eye, or outside the picture.
     if (1.0 + at.z * eye.frame.inverse_distance <= 1e-3 || any(box.first > box.last)) {
@@ -95,8 +95,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     atomicAdd(&splats, 1u);
     let stretch = stretch_of(at.z);
     let level = log2(max(stretch, 1.0));
-    let slope = gradient_of(vec3i(voxel)) + face_slope(centre, level, density, presence_slope(centre, level));
-    let rgb = shade(Sampled(centre, slope, density, 0.0), material.rgb);
+    let slope = gradient_of(vec3i(voxel)) + face_slope(centre, level, density, presence_gradient(centre, level));
+    let rgb = shade(VolumeSample(centre, slope, density, 0.0), material.rgb);
     for (var j = box.first.y; j <= box.last.y; j += 1.0) {
         for (var i = box.first.x; i <= box.last.x; i += 1.0) {
             let ray = ray_of(scatter.frame, vec2f(i, j));

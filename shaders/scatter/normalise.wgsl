@@ -19,7 +19,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     if (any(voxel >= scatter.light_dims)) {
         return;
     }
-    let at = locate((vec3f(voxel) + 0.5) * scatter.voxel_step - 0.5);
+    let at = project_to_sheets((vec3f(voxel) + 0.5) * scatter.voxel_step - 0.5);
     let spread = 1.0 + at.z * scatter.frame.inverse_distance;
     // Distance from the axis in pixels, times w.
     let across = at.xy + scatter.first_pixel * spread;

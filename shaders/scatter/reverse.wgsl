@@ -20,7 +20,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let ray = ray_of(scatter.frame, vec2f(id.xy));
     let p = ray.origin + ray.direction * depth;
     // Pixels may miss the grid by up to the kernel's width.
-    let brick = brick_near(p);
+    let brick = nearest_brick(p);
     if (textureLoad(distances, brick, 0).r > 0u) {
         return;
     }
@@ -38,11 +38,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                 let voxel = vec3i(x, y, z);
                 let centre = (vec3f(voxel) + 0.5) * scatter.voxel_step - 0.5;
                 let weight = footprint(centre, ray, depth, true) * scatter.pixel_share;
-                let share = i32(round(weight * UNIT));
+                let share = i32(round(weight * FIXED_POINT_ONE));
                 if (share != 0) {
                     let at = x + i32(scatter.light_dims.x) * (y + i32(scatter.light_dims.y) * z);
                     atomicAdd(&weights[at], share);
-                    atomicAdd(&light[at], i32(round(weight * deposit * UNIT)));
+                    atomicAdd(&light[at], i32(round(weight * deposit * FIXED_POINT_ONE)));
                 }
             }
         }

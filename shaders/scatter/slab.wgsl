@@ -2,14 +2,14 @@
 #import "common/sizes.wgsl"
 #import "sheets/sheet_frame.wgsl"
 
-struct Scatter {
-    frame: SheetFrame,
+struct ScatterSlabUniform {
+    frame: SheetFrameUniform,
     // Index space to (w·i, w·j, z) with w = 1 + z · inverse_distance, a linear map: three rows.
     sheets_from_index_x: vec4f,
     sheets_from_index_y: vec4f,
     sheets_from_index_z: vec4f,
     // Half the extents of a kernel in (w·i, w·j, z).
-    half: vec3f,
+    half_extents: vec3f,
     // Width of the kernel relative to that in index space.
     stretch: f32,
     // Number of voxels along x, y and z.
@@ -61,14 +61,14 @@ const ORDER_EVERY_FOOTPRINT = 2u;
 
 override ORDER: u32 = 0u;
 
-@group(1) @binding(5) var<uniform> bound_scatter: Scatter;
-var<private> scatter: Scatter;
+@group(1) @binding(5) var<uniform> bound_scatter: ScatterSlabUniform;
+var<private> scatter: ScatterSlabUniform;
 // Sums of density × footprint in units of 2⁻²⁴: integers, so that the order of summation does not matter.
 @group(1) @binding(6) var<storage, read_write> sheets: array<atomic<i32>>;
 
 // Fixed-point representation of 1: the resolution is far below that of 8- or 16-bit densities, with headroom for sums
 // up to 128.
-const UNIT = 16777216.0;
+const FIXED_POINT_ONE = 16777216.0;
 
 fn sheet_index(pixel: vec2u, k: u32) -> u32 {
     return (k % scatter.layers * scatter.frame.size.y + pixel.y) * scatter.frame.size.x + pixel.x;
@@ -100,7 +100,7 @@ fn crossing_of(ray: Ray, k: f32) -> Crossing {
 }
 
 // Projection of an index-space point: (w·i, w·j, z).
-fn locate(p: vec3f) -> vec3f {
+fn project_to_sheets(p: vec3f) -> vec3f {
     let point = vec4f(p, 1.0);
     return vec3f(
         dot(scatter.sheets_from_index_x, point),
@@ -110,7 +110,7 @@ fn locate(p: vec3f) -> vec3f {
 }
 
 // Brick that contains a point; outside the grid, the nearest at its border.
-fn brick_near(p: vec3f) -> vec3i {
+fn nearest_brick(p: vec3f) -> vec3i {
     return clamp(vec3i(floor(p / BRICK_EDGE)), vec3i(0), scatter.bricks - 1);
 }
 
@@ -120,5 +120,5 @@ fn brick_with_material(p: vec3f) -> vec3i {
     if (any(p < vec3f(-2.00001)) || any(p > scatter.dims + 1.00001)) {
         return vec3i(-1);
     }
-    return brick_near(p);
+    return nearest_brick(p);
 }

@@ -27,10 +27,10 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
         return;
     }
     let centre = vec3f(voxel);
-    let seen = locate(centre);
+    let seen = project_to_sheets(centre);
     let depth = depth_of(scatter.frame, f32(scatter.k));
     if (ORDER == ORDER_IMAGE_ALIGNED) {
-        if (abs(seen.z - depth) >= scatter.half.z + 0.5 * scatter.frame.slab) {
+        if (abs(seen.z - depth) >= scatter.half_extents.z + 0.5 * scatter.frame.slab) {
             return;
         }
     } else if (dot(scatter.axis, centre) != slice_of(f32(scatter.k))) {
@@ -53,12 +53,12 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
                 weight = whole_footprint(centre, ray, stretch_of(seen.z)) / crossing_of(ray, 0.0).thickness;
             }
             let at = sheet_index(vec2u(pixel), scatter.k);
-            let share = i32(round(value * weight * UNIT));
+            let share = i32(round(value * weight * FIXED_POINT_ONE));
             if (share != 0) {
                 atomicAdd(&sheets[at], share);
             }
             if (SPLAT == SPLAT_MATERIAL && extinction * weight > 0.0) {
-                let sums = vec4i(round(vec4f(material.rgb, 1.0) * (extinction * weight * UNIT)));
+                let sums = vec4i(round(vec4f(material.rgb, 1.0) * (extinction * weight * FIXED_POINT_ONE)));
                 atomicAdd(&sheets[channel_index(at, 1u)], sums.r);
                 atomicAdd(&sheets[channel_index(at, 2u)], sums.g);
                 atomicAdd(&sheets[channel_index(at, 3u)], sums.b);

@@ -3,9 +3,9 @@
 
 const MAX_LIGHTS = 8;
 
-struct Light {
+struct LightUniform {
     // Unit direction towards a parallel light, or position of a perspective one, in scene space.
-    place: vec3f,
+    position_or_direction: vec3f,
     // 0: parallel, 1: perspective.
     perspective: f32,
     // Linear colour × intensity.
@@ -15,12 +15,12 @@ struct Light {
     // Scale from index space to texture coordinates of its volume: (p + ½) × lookup.
     lookup: vec3f,
     // Cosine of the cone's inner angle, up to which the light is full; hood_outer is where it ends.
-    hood_inner: f32,
+    cone_cos_inner: f32,
     // Axis of the cone, a unit vector from the light towards its target.
-    hood_axis: vec3f,
-    hood_outer: f32,
+    cone_axis: vec3f,
+    cone_cos_outer: f32,
     // Additional length of the last near-field step: half a voxel of the light volume, in scene units.
-    near_ahead: f32,
+    last_step_extension: f32,
     // Number of points on an area light (src/model/settings/light/area.rs), or 1.
     points: u32,
     // Shape of the area light: 1 disc, 2 rectangle, 3 ball.
@@ -42,7 +42,7 @@ struct Light {
 const GOLDEN_SHARE = 0.618034;
 
 // Point `index` of `count` on a disc of radius 1, arranged in rings.
-fn on_rings(index: u32, count: u32) -> vec2f {
+fn point_on_disc(index: u32, count: u32) -> vec2f {
     let all = f32(count);
     let rings = max(floor(sqrt(all) / 2.0 + 0.5), 1.0);
     let each = all / (rings * rings);
@@ -59,23 +59,23 @@ fn on_rings(index: u32, count: u32) -> vec2f {
 }
 
 // Point `index` of an area light, as a point light.
-fn point_of(light: Light, index: u32) -> Light {
+fn area_light_point(light: LightUniform, index: u32) -> LightUniform {
     var one = light;
     if (light.points > 1u) {
         let number = f32(index);
         let at = (number + 0.5) / f32(light.points);
         let spread = fract(number * GOLDEN_SHARE + 0.5);
-        let disc = on_rings(index, light.points);
+        let disc = point_on_disc(index, light.points);
         let across = select(disc, vec2f(2.0 * at, 2.0 * spread) - 1.0, light.shape == 2u);
         let deep = sqrt(1.0 - dot(disc, disc)) * sin(3.1415927 * (spread - 0.5));
-        let place = light.place + light.area_right * across.x + light.area_up * across.y + light.area_near * deep;
-        one.place = select(normalize(place), place, light.perspective > 0.5);
-        one.hood_axis = -normalize(place);
+        let place = light.position_or_direction + light.area_right * across.x + light.area_up * across.y + light.area_near * deep;
+        one.position_or_direction = select(normalize(place), place, light.perspective > 0.5);
+        one.cone_axis = -normalize(place);
     }
     return one;
 }
 
-struct Towards {
+struct LightDirection {
     // Unit vector to the light.
     direction: vec3f,
     // Distance to the light; for a parallel one, beyond all material.
@@ -84,15 +84,15 @@ struct Towards {
     per_length: f32,
 }
 
-fn to_light(light: Light, position: vec3f) -> Towards {
-    let away = light.place - position * light.perspective;
+fn to_light(light: LightUniform, position: vec3f) -> LightDirection {
+    let away = light.position_or_direction - position * light.perspective;
     let distance = length(away);
     let per_length = 1.0 / max(distance, 1e-9);
-    return Towards(away * per_length, select(1e6, distance, light.perspective > 0.5), per_length);
+    return LightDirection(away * per_length, select(1e6, distance, light.perspective > 0.5), per_length);
 }
 
 // Squared sine of half the angular width of a light; 0 for a point light.
-fn width_seen(light: Light, towards: Towards) -> f32 {
+fn angular_width(light: LightUniform, towards: LightDirection) -> f32 {
     let mean_square = 0.5 * (dot(light.area_right, light.area_right) + dot(light.area_up, light.area_up));
     let tangent = mean_square * towards.per_length * towards.per_length;
     return tangent / (1.0 + tangent);
@@ -100,7 +100,7 @@ fn width_seen(light: Light, towards: Towards) -> f32 {
 
 // Part of a disc of radius 1 above the horizon, for a centre at a height from −1 to 1: fraction of its area, and
 // height of the centroid.
-fn risen_disc(height: f32) -> vec2f {
+fn disc_above_horizon(height: f32) -> vec2f {
     // Below −0.98, f32 lacks the precision for the remainder; the centroid of a thin segment is at 2/5 of its height.
     let u = clamp(height, -0.98, 1.0);
     let quarter = 1.5707963 + asin(u);
@@ -113,9 +113,9 @@ fn risen_disc(height: f32) -> vec2f {
 }
 
 // Part of a light above the horizon of a surface.
-struct Risen {
+struct HorizonClip {
     // Direction to the centroid of the part above the horizon.
-    towards: Towards,
+    towards: LightDirection,
     // Cosine between the surface normal and the direction to the light's centre.
     middle: f32,
     // Mean cosine over the part above the horizon.
@@ -126,28 +126,28 @@ struct Risen {
 
 // Computes the part of a light above the horizon; `weight` is the surfaceness, which scales the turn of the
 // direction.
-fn risen_above(light: Light, towards: Towards, normal: vec3f, weight: f32) -> Risen {
-    let half_width = sqrt(width_seen(light, towards));
+fn clip_to_horizon(light: LightUniform, towards: LightDirection, normal: vec3f, weight: f32) -> HorizonClip {
+    let half_width = sqrt(angular_width(light, towards));
     let facing = dot(normal, towards.direction);
     // A single point is either above the horizon or below.
     if (light.points == 1u || half_width <= max(facing, 0.0)) {
-        return Risen(towards, facing, facing, 1.0);
+        return HorizonClip(towards, facing, facing, 1.0);
     }
     let height = facing / half_width;
-    let disc = risen_disc(height);
+    let disc = disc_above_horizon(height);
     // With nothing above the horizon there is no centroid; the direction returns gradually to the centre.
     let up = select(disc.y - height, max(2.0 + height, 0.0), height < -1.0) * half_width * weight;
     let direction = normalize(towards.direction + normal * up);
-    let turned = Towards(direction, towards.distance, towards.per_length);
-    return Risen(turned, facing, disc.y * half_width, disc.x);
+    let turned = LightDirection(direction, towards.distance, towards.per_length);
+    return HorizonClip(turned, facing, disc.y * half_width, disc.x);
 }
 
 // Smooth step across the rim of the light's cone: 3t² − 2t³.
-fn hood_share(light: Light, to_light: vec3f) -> f32 {
-    return smoothstep(light.hood_outer, light.hood_inner, -dot(light.hood_axis, to_light));
+fn cone_attenuation(light: LightUniform, to_light: vec3f) -> f32 {
+    return smoothstep(light.cone_cos_outer, light.cone_cos_inner, -dot(light.cone_axis, to_light));
 }
 
-struct Shading {
+struct ShadingUniform {
     emission: f32,
     ambient: f32,
     diffuse: f32,
@@ -163,7 +163,7 @@ struct Shading {
     // Distance between the samples of a ray to a light, in scene units.
     ray_step: f32,
     // Optical depth at which a ray to a light ends.
-    dark_depth: f32,
+    max_optical_depth: f32,
     // Mean cosine of the scattering angle in material without a surface.
     anisotropy: f32,
     pad0: f32,
@@ -192,24 +192,24 @@ struct Surface {
 override ONE_SIDED: bool = false;
 
 // Lengths of the near-field steps, in shortest edges of a voxel: ½ ½ 1 1 1½ 1½ 2.
-fn near_width(step: u32) -> f32 {
+fn near_step_length(step: u32) -> f32 {
     return 0.5 * f32(1u + (step >> 1u));
 }
 
-struct Lit {
+struct ReflectedLight {
     diffuse: vec3f,
     specular: vec3f,
 }
 
 // Attenuated light at the sample, after the cures for darkness (P §4).
-fn received(shading: Shading, attenuation: Left) -> Left {
+fn apply_shadow_cures(shading: ShadingUniform, attenuation: Left) -> Left {
     let light = min(shading.gain * attenuation + shading.ambient_offset, Left(1.0));
     return 1.0 - shading.strength * (1.0 - light);
 }
 
 // Phase function of material without a surface, relative to isotropic scattering: that of Henyey and Greenstein times
 // 4π, (1 − g²) / (1 + g² − 2 g cos θ)^(3/2).
-fn scattered_share(shading: Shading, surface: Surface, to_light: vec3f) -> f32 {
+fn relative_phase_function(shading: ShadingUniform, surface: Surface, to_light: vec3f) -> f32 {
 #if ANISOTROPIC
     let g = shading.anisotropy;
     // The scattering angle is 0 for light that continues in its direction.
@@ -224,7 +224,7 @@ fn scattered_share(shading: Shading, surface: Surface, to_light: vec3f) -> f32 {
 // Diffusely reflected fraction of a light of which `share` arrives. The part below the horizon is subtracted;
 // `unmissed` is the part of the light that counts even if it is below. `amid` is the factor for material without a
 // surface.
-fn diffuse_share(light: Light, surface: Surface, risen: Risen, share: Left, unmissed: f32, amid: f32) -> Left {
+fn diffuse_reflectance(light: LightUniform, surface: Surface, risen: HorizonClip, share: Left, unmissed: f32, amid: f32) -> Left {
     var reflected = share * abs(risen.middle);
     if (ONE_SIDED) {
         let outer = 0.5 + 0.5 * abs(surface.side);
@@ -240,20 +240,20 @@ fn diffuse_share(light: Light, surface: Surface, risen: Risen, share: Left, unmi
 //
 // A highlight (N·H)^n is approximately a Gaussian of variance 1/n. Light from a uniform disc of radius s moves H by
 // half its own deflection, which adds s²/16 to the variance, and the highlight dims as it widens.
-fn reflect_light(shading: Shading, light: Light, surface: Surface, risen: Risen, share: Left, unmissed: f32) -> Lit {
+fn reflect_light(shading: ShadingUniform, light: LightUniform, surface: Surface, risen: HorizonClip, share: Left, unmissed: f32) -> ReflectedLight {
     let to_light = risen.towards.direction;
     // Highlights are one-sided: on the side to which density falls, or opacity if ONE_SIDED.
     let turned = select(1.0, -1.0, ONE_SIDED && surface.side < 0.0);
     let clear = select(1.0, abs(surface.side), ONE_SIDED);
-    let amid = scattered_share(shading, surface, to_light);
-    let diffuse = light.color * diffuse_share(light, surface, risen, share, unmissed, amid);
+    let amid = relative_phase_function(shading, surface, to_light);
+    let diffuse = light.color * diffuse_reflectance(light, surface, risen, share, unmissed, amid);
     let half_vector = to_light + surface.to_eye;
     // Avoids pow(0, x), which is NaN on some drivers.
     let aligned = max(turned * dot(surface.normal, half_vector) / max(length(half_vector), 1e-6), 1e-6);
-    let width = width_seen(light, risen.towards);
+    let width = angular_width(light, risen.towards);
     let wider = 1.0 / (1.0 + shading.shininess * width / 16.0);
     let mirrored = pow(aligned, shading.shininess * wider) * wider;
     let is_before = turned * dot(surface.normal, to_light) > 0.0;
     let highlight = select(0.0, mirrored, is_before) * surface.surfaceness * clear;
-    return Lit(diffuse, light.color * share * highlight);
+    return ReflectedLight(diffuse, light.color * share * highlight);
 }

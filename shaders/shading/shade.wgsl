@@ -11,10 +11,10 @@
 #import "density/cut.wgsl"
 #import "shading/light_volumes.wgsl"
 
-struct Eye {
-    frame: SheetFrame,
-    shading: Shading,
-    space: Space,
+struct EyeUniform {
+    frame: SheetFrameUniform,
+    shading: ShadingUniform,
+    space: SpaceUniform,
     // Eye in scene space; w is 0 for an orthographic camera, for which it is the direction to the eye.
     eye: vec4f,
     // First row of this dispatch.
@@ -24,30 +24,30 @@ struct Eye {
     // Distance from occupied bricks, in bricks, within which sums of scattered sheets are complete.
     dilation: i32,
     // Minimum transmittance, at which the ray ends.
-    dark: f32,
+    min_transmittance: f32,
     // Distances of gradients from sheets, in pixels and slabs to either side.
     gradient_pixels: i32,
     gradient_slabs: i32,
     // Number of interleaved runs of tile rows (sheets/tiles.wgsl).
     runs: u32,
     // Shortest edge of a voxel, in scene units; unit of the near-field steps.
-    near_edge: f32,
+    voxel_edge: f32,
     // Scale from index space to texture coordinates of the combined light volume.
     combined_lookup: vec3f,
     pad0: f32,
     // Region that is visible.
-    seen: Cut,
+    visible_cut: CutUniform,
     // Region that is visible, limited to the grid: the faces of solids.
-    faces: Cut,
+    face_cut: CutUniform,
     // Region that attenuates light.
-    shading_cut: Cut,
-    sky: Sky,
-    bounces: Bounces,
-    lights: array<Light, MAX_LIGHTS>,
+    shading_cut: CutUniform,
+    sky: SkyUniform,
+    scattered_light: ScatteredLightUniform,
+    lights: array<LightUniform, MAX_LIGHTS>,
 }
 
-@group(0) @binding(0) var<uniform> bound_eye: Eye;
-var<private> eye: Eye;
+@group(0) @binding(0) var<uniform> bound_eye: EyeUniform;
+var<private> eye: EyeUniform;
 
 // Number of lights that are on; those with an attenuation volume come first.
 override LIGHTS: u32 = 1u;
@@ -57,40 +57,40 @@ override SHADOWED: u32 = 1u;
 override COMBINED: bool = false;
 
 // Point where a sample's light is looked up: offset towards the light by the bias.
-fn biased(surface: Surface, towards: Towards) -> vec3f {
-    return surface.point + to_index(eye.space, towards.direction) * eye.shading.bias;
+fn biased_point(surface: Surface, towards: LightDirection) -> vec3f {
+    return surface.point + index_from_scene_vector(eye.space, towards.direction) * eye.shading.bias;
 }
 
 // Light above the horizon of the side of a surface to which opacity falls.
-fn seen_by(light: Light, surface: Surface) -> Risen {
+fn light_above_surface(light: LightUniform, surface: Surface) -> HorizonClip {
     let towards = to_light(light, surface.position);
     if (ONE_SIDED) {
         let outward = surface.normal * select(1.0, -1.0, surface.side < 0.0);
-        return risen_above(light, towards, outward, surface.surfaceness * abs(surface.side) * (1.0 - light.two_sided));
+        return clip_to_horizon(light, towards, outward, surface.surfaceness * abs(surface.side) * (1.0 - light.two_sided));
     }
     let facing = dot(surface.normal, towards.direction);
-    return Risen(towards, facing, facing, 1.0);
+    return HorizonClip(towards, facing, facing, 1.0);
 }
 
 // Attenuation of a light at an index-space point, from its volume.
-fn looked_up(light: Light, volume: texture_3d<f32>, p: vec3f) -> Left {
-    return stored_left(textureSampleLevel(volume, clamped, (p + 0.5) * light.lookup, 0.0));
+fn lookup_attenuation(light: LightUniform, volume: texture_3d<f32>, p: vec3f) -> Left {
+    return stored_transmittance(textureSampleLevel(volume, clamped, (p + 0.5) * light.lookup, 0.0));
 }
 
-fn lit_by(index: u32, volume: texture_3d<f32>, surface: Surface) -> Lit {
+fn light_from(index: u32, volume: texture_3d<f32>, surface: Surface) -> ReflectedLight {
     let light = eye.lights[index];
-    let risen = seen_by(light, surface);
-    let share = received(eye.shading, attenuation_at(light, volume, surface, risen.towards));
+    let risen = light_above_surface(light, surface);
+    let share = apply_shadow_cures(eye.shading, attenuation_at(light, volume, surface, risen.towards));
     // With weaker shadows, light below the horizon counts in part.
     return reflect_light(eye.shading, light, surface, risen, share, 1.0 - eye.shading.strength);
 }
 
-fn add(a: Lit, b: Lit) -> Lit {
-    return Lit(a.diffuse + b.diffuse, a.specular + b.specular);
+fn add_light(a: ReflectedLight, b: ReflectedLight) -> ReflectedLight {
+    return ReflectedLight(a.diffuse + b.diffuse, a.specular + b.specular);
 }
 
 // Sample of the volume.
-struct Sampled {
+struct VolumeSample {
     // Position in index space.
     point: vec3f,
     // Gradient in scene space.
@@ -117,25 +117,25 @@ fn face_slope(p: vec3f, level: f32, density: f32, rising: vec3f) -> vec3f {
     let turned = select(1.0, -1.0, ONE_SIDED && side_at(density) < 0.0);
 #if PRECLASSIFY
     // Pre-classified materials end with their voxels.
-    let faces = face_gradient(eye.seen, p, level);
+    let faces = face_gradient(eye.visible_cut, p, level);
 #else
 #if MISSING
     // Presence includes the faces of the grid.
-    let faces = face_gradient(eye.seen, p, level) + rising;
+    let faces = face_gradient(eye.visible_cut, p, level) + rising;
 #else
-    let faces = face_gradient(eye.faces, p, level);
+    let faces = face_gradient(eye.face_cut, p, level);
 #endif
 #endif
     return turned * gradient_to_scene(eye.space, faces);
 }
 
-fn surface_of(found: Sampled) -> Surface {
+fn surface_of(found: VolumeSample) -> Surface {
     let p = found.point;
     let slope = found.slope;
     let steepness = length(slope);
     let s = eye.shading;
     let steep2 = steepness * steepness;
-    let position = place_of(eye.space, p);
+    let position = scene_from_index(eye.space, p);
     let away = eye.eye.xyz - position * eye.eye.w;
     return Surface(
         position,
@@ -149,46 +149,46 @@ fn surface_of(found: Sampled) -> Surface {
 }
 
 // Light of all lights that cast shadows.
-fn lit_through_material(surface: Surface) -> Lit {
-    var lit = Lit(vec3f(0.0), vec3f(0.0));
+fn shadowed_light_sum(surface: Surface) -> ReflectedLight {
+    var lit = ReflectedLight(vec3f(0.0), vec3f(0.0));
 #if SHADOWED > 0
-    lit = add(lit, lit_by(0u, attenuation_0, surface));
+    lit = add_light(lit, light_from(0u, attenuation_0, surface));
 #endif
 #if SHADOWED > 1
-    lit = add(lit, lit_by(1u, attenuation_1, surface));
+    lit = add_light(lit, light_from(1u, attenuation_1, surface));
 #endif
 #if SHADOWED > 2
-    lit = add(lit, lit_by(2u, attenuation_2, surface));
+    lit = add_light(lit, light_from(2u, attenuation_2, surface));
 #endif
 #if SHADOWED > 3
-    lit = add(lit, lit_by(3u, attenuation_3, surface));
+    lit = add_light(lit, light_from(3u, attenuation_3, surface));
 #endif
 #if SHADOWED > 4
-    lit = add(lit, lit_by(4u, attenuation_4, surface));
+    lit = add_light(lit, light_from(4u, attenuation_4, surface));
 #endif
 #if SHADOWED > 5
-    lit = add(lit, lit_by(5u, attenuation_5, surface));
+    lit = add_light(lit, light_from(5u, attenuation_5, surface));
 #endif
 #if SHADOWED > 6
-    lit = add(lit, lit_by(6u, attenuation_6, surface));
+    lit = add_light(lit, light_from(6u, attenuation_6, surface));
 #endif
 #if SHADOWED > 7
-    lit = add(lit, lit_by(7u, attenuation_7, surface));
+    lit = add_light(lit, light_from(7u, attenuation_7, surface));
 #endif
     return lit;
 }
 
 // Point at a distance in front of a surface, on its lit side; the sample itself within homogeneous material. In index
 // space.
-fn in_front(surface: Surface, way: f32) -> vec3f {
+fn point_in_front(surface: Surface, way: f32) -> vec3f {
     let turned = select(1.0, -1.0, ONE_SIDED && surface.side < 0.0);
-    return surface.point + to_index(eye.space, surface.normal) * (turned * surface.surfaceness * way);
+    return surface.point + index_from_scene_vector(eye.space, surface.normal) * (turned * surface.surfaceness * way);
 }
 
 // Light of the sky at a sample, to be multiplied by its colour.
-fn lit_by_sky(surface: Surface) -> vec3f {
+fn sky_light(surface: Surface) -> vec3f {
 #if SKY
-    return reflect_sky(eye.sky, surface, in_front(surface, eye.sky.ahead), eye.shading.strength);
+    return reflect_sky(eye.sky, surface, point_in_front(surface, eye.sky.lookup_distance), eye.shading.strength);
 #else
     return vec3f(0.0);
 #endif
@@ -199,10 +199,10 @@ fn lit_by_sky(surface: Surface) -> vec3f {
 #endif
 
 // Scattered light at a sample, to be multiplied by its colour.
-fn lit_by_bounces(surface: Surface) -> vec3f {
+fn scattered_light(surface: Surface) -> vec3f {
 #if BOUNCES
-    let bounces = eye.bounces;
-    let place = (in_front(surface, bounces.ahead) + 0.5) * bounces.lookup;
+    let bounces = eye.scattered_light;
+    let place = (point_in_front(surface, bounces.lookup_distance) + 0.5) * bounces.lookup;
     return bounces.share * textureSampleLevel(bounced_texture, clamped, place, 0.0).rgb;
 #else
     return vec3f(0.0);
@@ -210,24 +210,24 @@ fn lit_by_bounces(surface: Surface) -> vec3f {
 }
 
 // Light from a sample towards the eye.
-fn shade(found: Sampled, material: vec3f) -> vec3f {
+fn shade(found: VolumeSample, material: vec3f) -> vec3f {
     let s = eye.shading;
     let p = found.point;
     let surface = surface_of(found);
-    var lit: Lit;
+    var lit: ReflectedLight;
     if (COMBINED) {
-        lit = Lit(textureSampleLevel(attenuation_0, clamped, (p + 0.5) * eye.combined_lookup, 0.0).rgb, vec3f(0.0));
+        lit = ReflectedLight(textureSampleLevel(attenuation_0, clamped, (p + 0.5) * eye.combined_lookup, 0.0).rgb, vec3f(0.0));
     } else {
-        lit = lit_through_material(surface);
+        lit = shadowed_light_sum(surface);
     }
     for (var i = SHADOWED; i < LIGHTS; i += 1u) {
         // Indexed in the uniform: copying an array that is indexed dynamically would keep it in memory.
         let light = bound_eye.lights[i];
-        let risen = seen_by(light, surface);
-        let share = hood_share(light, risen.towards.direction);
-        lit = add(lit, reflect_light(s, light, surface, risen, Left(share), share));
+        let risen = light_above_surface(light, surface);
+        let share = cone_attenuation(light, risen.towards.direction);
+        lit = add_light(lit, reflect_light(s, light, surface, risen, Left(share), share));
     }
-    let around = lit_by_sky(surface) + lit_by_bounces(surface);
+    let around = sky_light(surface) + scattered_light(surface);
     return material * (s.emission + s.ambient + around + s.diffuse * lit.diffuse) + s.specular * lit.specular;
 }
 

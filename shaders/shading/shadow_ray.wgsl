@@ -17,10 +17,10 @@ fn shadow_ray(
     ray_step: f32,
     scale: f32,
     dark: f32,
-    cut: Cut,
+    cut: CutUniform,
 ) -> Left {
     // The ray as a stack of sheets: its sample points are the middles of the slabs.
-    var frame: SheetFrame;
+    var frame: SheetFrameUniform;
     frame.first_depth = select(0.0, 0.5 * ray_step, DEPOSIT_FRONT);
     frame.slab = ray_step;
     frame.voxel_edge = 1.0;
@@ -29,7 +29,7 @@ fn shadow_ray(
     let ray = Ray(p, direction, 1.0);
     let span = span_within(cut, ray);
     let inside = slabs_within(frame, span, slabs_inside(frame, ray));
-    let walk = walk_along(frame, ray);
+    let walk = cell_ray(frame, ray);
     var k = inside.x;
     var depth = Left(0.0);
     loop {
@@ -43,14 +43,14 @@ fn shadow_ray(
             if (empty <= 0) {
                 break;
             }
-            k = leap(walk, k, cell, empty);
+            k = skip_empty_cells(walk, k, cell, empty);
         }
         if (k > inside.y) {
             break;
         }
-        let share = share_that_shades(cut, p + direction * depth_of(frame, f32(k))) * slab_presence(frame, ray, f32(k));
+        let share = shading_fraction(cut, p + direction * depth_of(frame, f32(k))) * slab_presence(frame, ray, f32(k));
         depth += ray_extinction(frame, ray, f32(k)) * share * ray_step * scale;
-        if (least_of(depth) > dark) {
+        if (min_component(depth) > dark) {
             break;
         }
         k += 1;
@@ -59,7 +59,7 @@ fn shadow_ray(
     let end = p + direction * reach;
     if (frame.first_depth < reach && all(end > vec3f(-2.0)) && all(end < grid.dims + 1.0)) {
         frame.slab = reach - frame.first_depth;
-        let share = share_that_shades(cut, p + direction * depth_of(frame, 0.0)) * slab_presence(frame, ray, 0.0);
+        let share = shading_fraction(cut, p + direction * depth_of(frame, 0.0)) * slab_presence(frame, ray, 0.0);
         depth += ray_extinction(frame, ray, 0.0) * share * frame.slab * scale;
     }
     return exp(-depth);

@@ -1,5 +1,5 @@
 // Sky whose radiance is linear in the direction (src/model/settings/light/sky.rs): L(ω) = l₀ + l₁·ω.
-struct Sky {
+struct SkyUniform {
     // Slope l₁, in scene space, and mean l₀ for each colour.
     red: vec4f,
     green: vec4f,
@@ -8,5 +8,5 @@ struct Sky {
     lookup: vec3f,
     // Distance in front of a surface at which visibility is looked up, in scene units: nearer blocks contain the
     // surface itself.
-    ahead: f32,
+    lookup_distance: f32,
 }

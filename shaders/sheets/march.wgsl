@@ -4,8 +4,8 @@
 #import "density/cut.wgsl"
 #import "common/slab_mean.wgsl"
 
-struct March {
-    frame: SheetFrame,
+struct MarchUniform {
+    frame: SheetFrameUniform,
     // Range of slabs of this chunk; the end is exclusive.
     begin: u32,
     end: u32,
@@ -16,19 +16,19 @@ struct March {
     // Factor applied to extinction.
     extinction_scale: f32,
     // Cone of the light, as in shading/lights.wgsl, with its axis in the coordinates of the sheets.
-    hood_inner: f32,
-    hood_outer: f32,
+    cone_cos_inner: f32,
+    cone_cos_outer: f32,
     // Distance, in cells, from cells visible in either transfer function up to which sheets are read.
     reach: i32,
-    hood_axis: vec3f,
+    cone_axis: vec3f,
     // Minimum transmittance, at which light is no longer followed.
-    dark: f32,
+    min_transmittance: f32,
     // Region that attenuates light.
-    shading_cut: Cut,
+    shading_cut: CutUniform,
 }
 
-@group(0) @binding(0) var<uniform> bound_march: March;
-var<private> march: March;
+@group(0) @binding(0) var<uniform> bound_march: MarchUniform;
+var<private> march: MarchUniform;
 // Transmittance in front of the next slab, per pixel.
 @group(0) @binding(3) var<storage, read_write> transmittance: array<f32>;
 // Ring with four slabs per texel, which takes a quarter of the stores here, and of the fetches in the
@@ -39,20 +39,20 @@ var<private> march: March;
 override DEPOSIT_FRONT: bool = false;
 
 // Light inside the cone at a pixel: the sheet in front of the first slab.
-fn unattenuated(pixel: vec2f) -> f32 {
+fn cone_light(pixel: vec2f) -> f32 {
     let slope = march.frame.slope + march.frame.slope_di * pixel.x + march.frame.slope_dj * pixel.y;
     let along = normalize(vec3f(slope, 1.0));
-    return smoothstep(march.hood_outer, march.hood_inner, dot(march.hood_axis, along));
+    return smoothstep(march.cone_cos_outer, march.cone_cos_inner, dot(march.cone_axis, along));
 }
 
 // Deposit of a slab of optical depth tau, with transmittance t in front of it.
-fn deposited(t: f32, tau: f32) -> f32 {
-    return select(t * slab_mean(tau), t, DEPOSIT_FRONT);
+fn slab_deposit(t: f32, tau: f32) -> f32 {
+    return select(t * slab_mean_transmittance(tau), t, DEPOSIT_FRONT);
 }
 
 // Stores the deposits of the four slabs that share a texel with slab k.
-fn keep(pixel: vec2u, k: u32, deposits: vec4f) {
-    textureStore(ring, pixel, in_ring(i32(k / 4u), march.layers), deposits);
+fn store_deposits(pixel: vec2u, k: u32, deposits: vec4f) {
+    textureStore(ring, pixel, ring_layer(i32(k / 4u), march.layers), deposits);
 }
 
 // Replaces the deposit of slab k.

@@ -20,7 +20,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
     }
     var sum = 0.0;
     for (var corner = 0u; corner < 8u; corner += 1u) {
-        sum += extinction_at(place_in(id, corner));
+        sum += extinction_at(block_sample_point(id, corner));
     }
     textureStore(extinction, id + 1u, vec4f(sum * blocks.edge / 8.0));
 }

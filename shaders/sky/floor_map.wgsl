@@ -30,10 +30,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     for (var i = 0u; i < DIRECTIONS; i += 1u) {
         let rays = bound_sweep.rays[i];
         // Beyond the first and the last rays there is no occlusion.
-        let ray = clamp(place_among(rays, block).xy, vec2f(-1.0), vec2f(rays.size) - 1.0);
+        let ray = clamp(ray_coordinates(rays, block).xy, vec2f(-1.0), vec2f(rays.size) - 1.0);
         let place = vec3f(ray + 1.5, f32(i) + 0.5) * sweep.sheet_scale;
         let passed = textureSampleLevel(left, clamped, place, 0.0).r;
-        sum += rays.weight * passed * vec4f(rays.towards, 1.0);
+        sum += rays.weight * passed * vec4f(rays.direction_to_light, 1.0);
     }
     if (IS_LAST) {
         textureStore(moments, vec3u(id.xy, 0u), sum * map.share);

@@ -1,6 +1,6 @@
 // Position of the floor map's texels in block coordinates.
 
-struct FloorMap {
+struct FloorSkyMapUniform {
     // Centre of texel (0, 0), and the steps to the next texel along both edges, in blocks.
     origin: vec3f,
     // Normalisation that makes C₀ of an open floor 1.
@@ -13,5 +13,5 @@ struct FloorMap {
     plane: vec4f,
 }
 
-@group(0) @binding(5) var<uniform> bound_map: FloorMap;
-var<private> map: FloorMap;
+@group(0) @binding(5) var<uniform> bound_map: FloorSkyMapUniform;
+var<private> map: FloorSkyMapUniform;

@@ -32,10 +32,10 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
     var sum = sums[at] * sweep.has_sums;
     for (var i = 0u; i < DIRECTIONS; i += 1u) {
         let rays = bound_sweep.rays[i];
-        let ray = place_among(rays, vec3f(id));
+        let ray = ray_coordinates(rays, vec3f(id));
         let place = (ray + vec3f(0.5, 0.5, f32(rays.layer) + 0.5)) * sweep.sheet_scale;
         let passed = textureSampleLevel(sheets, clamped, place, 0.0).r;
-        sum += rays.weight * passed * vec4f(rays.towards, 1.0);
+        sum += rays.weight * passed * vec4f(rays.direction_to_light, 1.0);
     }
     if (IS_LAST) {
         textureStore(moments, id, sum * sweep.share);

@@ -4,7 +4,7 @@
 #import "density/cells.wgsl"
 #import "density/cut.wgsl"
 
-struct Blocks {
+struct BlocksUniform {
     // Number of blocks along x, y and z, without the border.
     dims: vec3u,
     // Number of voxels along the edge of a block.
@@ -17,31 +17,31 @@ struct Blocks {
     edge: f32,
     // Fraction of attenuated light that is scattered, not absorbed; used by bounces/blocks.wgsl only.
     albedo: f32,
-    shading_cut: Cut,
+    shading_cut: CutUniform,
 }
 
-@group(0) @binding(0) var<uniform> bound_blocks: Blocks;
-var<private> blocks: Blocks;
+@group(0) @binding(0) var<uniform> bound_blocks: BlocksUniform;
+var<private> blocks: BlocksUniform;
 // Cells of blocks in which something may attenuate light.
 @group(0) @binding(2) var<storage, read> cells: array<u32>;
 
 // Extinction at an index-space point.
 fn extinction_at(p: vec3f) -> f32 {
 #if PRECLASSIFY
-    let found = classified_extinction(spread(p, blocks.level).r);
+    let found = classified_extinction(preclassified_at(p, blocks.level).r);
 #else
     let found = classified_extinction(pyramid(p, blocks.level)) * pyramid_presence(p, blocks.level);
 #endif
-    return found * share_that_shades(blocks.shading_cut, p);
+    return found * shading_fraction(blocks.shading_cut, p);
 }
 
 // Centre of a block in index space.
-fn middle_of(id: vec3u) -> vec3f {
+fn block_centre(id: vec3u) -> vec3f {
     return (vec3f(id) + 0.5) * blocks.voxel_step - 0.5;
 }
 
 // Sample point of a block, one of eight.
-fn place_in(id: vec3u, corner: u32) -> vec3f {
+fn block_sample_point(id: vec3u, corner: u32) -> vec3f {
     let side = vec3f(f32(corner & 1u), f32(corner >> 1u & 1u), f32(corner >> 2u)) * 2.0 - 1.0;
-    return middle_of(id) + side * blocks.offset;
+    return block_centre(id) + side * blocks.offset;
 }

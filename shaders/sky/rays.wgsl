@@ -3,9 +3,9 @@
 // Maximum number of directions in a batch.
 const MAX_SKY_RAYS = 8;
 
-struct SkyRays {
+struct SweepRaysUniform {
     // Unit vector towards the light, in scene space.
-    towards: vec3f,
+    direction_to_light: vec3f,
     // Path length from slice to slice, in shortest edges of a voxel.
     step: f32,
     // Shift of the rays from slice to slice, in blocks, along the two axes that follow that of the slices.
@@ -16,9 +16,9 @@ struct SkyRays {
     // Axis across which the slices lie.
     axis: u32,
     // 1 if light travels up the axis, else 0.
-    rises: u32,
+    is_ascending: u32,
     // Radiance that arrives from this direction, for sweeps of light rather than transmittance (bounces/sweep.wgsl).
-    arriving: vec3f,
+    incoming_radiance: vec3f,
     // Layer of the first slice in the sheets.
     layer: u32,
     // 1, or 0 for unused entries of a batch.
@@ -29,7 +29,7 @@ struct SkyRays {
     pad1: f32,
 }
 
-struct Sweep {
+struct SweepUniform {
     // Number of blocks along x, y and z.
     dims: vec3u,
     // One over the number of directions, which turns the sum into the mean.
@@ -40,26 +40,26 @@ struct Sweep {
     has_sums: f32,
     sheet_scale: vec3f,
     pad0: f32,
-    rays: array<SkyRays, MAX_SKY_RAYS>,
+    rays: array<SweepRaysUniform, MAX_SKY_RAYS>,
 }
 
-@group(0) @binding(0) var<uniform> bound_sweep: Sweep;
-var<private> sweep: Sweep;
+@group(0) @binding(0) var<uniform> bound_sweep: SweepUniform;
+var<private> sweep: SweepUniform;
 
 // Permutes the components of a block or of the grid's size: along the axis of the slices, then the two that follow.
-fn turned_to(rays: SkyRays, block: vec3f) -> vec3f {
+fn to_sweep_axes(rays: SweepRaysUniform, block: vec3f) -> vec3f {
     return select(select(block, block.yzx, rays.axis == 1u), block.zxy, rays.axis == 2u);
 }
 
 // Inverse of turned_to.
-fn turned_from(rays: SkyRays, turned: vec3f) -> vec3f {
+fn from_sweep_axes(rays: SweepRaysUniform, turned: vec3f) -> vec3f {
     return select(select(turned, turned.zxy, rays.axis == 1u), turned.yzx, rays.axis == 2u);
 }
 
 // Position of a point in block coordinates among the rays, in xy, and its slice, in z.
-fn place_among(rays: SkyRays, block: vec3f) -> vec3f {
-    let turned = turned_to(rays, block);
-    let last = turned_to(rays, vec3f(sweep.dims)).x - 1.0;
-    let n = select(last - turned.x, turned.x, rays.rises == 1u);
+fn ray_coordinates(rays: SweepRaysUniform, block: vec3f) -> vec3f {
+    let turned = to_sweep_axes(rays, block);
+    let last = to_sweep_axes(rays, vec3f(sweep.dims)).x - 1.0;
+    let n = select(last - turned.x, turned.x, rays.is_ascending == 1u);
     return vec3f(turned.yz - rays.drift * n - rays.first, n);
 }

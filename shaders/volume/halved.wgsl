@@ -8,6 +8,6 @@
 const OFFSET = 0.625;
 
 // Value of a texel, from the finer level, which is bound as the source.
-fn halved(texel: vec3u) -> vec4f {
+fn downsampled(texel: vec3u) -> vec4f {
     return mean_around(vec3f(texel) * 2.0 + 1.0, OFFSET);
 }

@@ -21,7 +21,7 @@ const INVOCATIONS = 256u;
 var<workgroup> voxels: array<vec4f, COUNT>;
 
 // Material of a voxel; 0 outside the grid.
-fn meaning(place: vec3i) -> vec4f {
+fn voxel_material(place: vec3i) -> vec4f {
     let last = vec3i(textureDimensions(source)) - 1;
     // Texels of the border are not voxels.
     let voxel = clamp(place + 1, vec3i(1), last - 1);
@@ -49,7 +49,7 @@ fn main(
     let first = vec3i(voxel_in(bricks[listed], group, vec3u(0u))) - 5;
     for (var turn = 0u; turn < COUNT; turn += INVOCATIONS) {
         let at = min(turn + index, COUNT - 1u);
-        voxels[at] = meaning(first + vec3i(vec3u(at % WIDTH, at / WIDTH % WIDTH, at / (WIDTH * WIDTH))));
+        voxels[at] = voxel_material(first + vec3i(vec3u(at % WIDTH, at / WIDTH % WIDTH, at / (WIDTH * WIDTH))));
     }
     workgroupBarrier();
     var sum = vec4f(0.0);
@@ -64,12 +64,12 @@ fn main(
             }
         }
     }
-    let texel = texel_of(group, local);
+    let texel = level_texel(group, local);
     if (any(texel >= textureDimensions(level))) {
         return;
     }
 #if MISSING
-    sum *= share_stored(textureLoad(presence_level, texel, 0));
+    sum *= decode_presence(textureLoad(presence_level, texel, 0));
 #endif
     textureStore(level, texel, sum);
 }

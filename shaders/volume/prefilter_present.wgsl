@@ -9,10 +9,10 @@
 @compute @workgroup_size(8, 8, 4)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
     resample = bound_resample;
-    let texel = texel_of(group, local);
+    let texel = level_texel(group, local);
     if (any(texel >= textureDimensions(level))) {
         return;
     }
-    let share = share_stored(textureLoad(presence_level, texel, 0));
+    let share = decode_presence(textureLoad(presence_level, texel, 0));
     textureStore(level, texel, vec4f(prefiltered(texel), share, 0.0, 0.0));
 }

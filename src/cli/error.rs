@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::data::SurroundingsError;
+use crate::data::EnvironmentMapError;
 use crate::data::load::{LoadError, LoadErrorKind};
 use crate::export::{ExportError, ReadPictureError};
 use crate::gpu::GpuError;
@@ -41,7 +41,7 @@ pub enum CliError {
     },
     /// A panorama cannot serve as an environment map.
     #[error(transparent)]
-    Surroundings(#[from] SurroundingsError),
+    Surroundings(#[from] EnvironmentMapError),
     /// The GPU reported an error.
     #[error(transparent)]
     Gpu(#[from] GpuError),
@@ -58,7 +58,7 @@ pub enum CliError {
     },
     /// A picture refers to a volume that is only opened with the user's consent.
     #[error("{}: its volume {volume} is not opened: {why}; {help}", picture.display())]
-    VolumeElsewhere {
+    UntrustedVolumePath {
         /// Path of the picture.
         picture: PathBuf,
         /// Path of the volume in the picture's record.
@@ -70,7 +70,7 @@ pub enum CliError {
     },
     /// Corrections would leave no valid volume.
     #[error("{path} could not be corrected ({by}): {why}; other values of `volume.…` help")]
-    Uncorrectable {
+    InvalidCorrection {
         /// Path of the volume.
         path: String,
         /// Corrections that were to be applied.
@@ -80,7 +80,7 @@ pub enum CliError {
     },
     /// A reproduced picture differs from the original.
     #[error("{0}")]
-    Differs(String),
+    ReplayDiffers(String),
     /// The result could not be written.
     #[error(transparent)]
     Export(#[from] ExportError),
@@ -89,7 +89,7 @@ pub enum CliError {
     Output(std::io::Error),
     /// The system refused to start threads.
     #[error("no thread could be started ({0}); fewer limits (`ulimit -u`, `ulimit -v`) help")]
-    Threads(String),
+    ThreadStart(String),
     /// The window could not be opened.
     #[error("{0}; `chiaroscuro render FILE -o OUT.png` needs no window")]
     Window(String),
@@ -100,12 +100,12 @@ impl CliError {
     /// or over a limit, 6 input or output error.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Differs(_) => 1,
+            Self::ReplayDiffers(_) => 1,
             Self::Usage(_) => 2,
             Self::Preset { .. }
             | Self::Replay { .. }
-            | Self::VolumeElsewhere { .. }
-            | Self::Uncorrectable { .. } => 3,
+            | Self::UntrustedVolumePath { .. }
+            | Self::InvalidCorrection { .. } => 3,
             // Regions are only ever given on the command line.
             Self::Load(err) if err.is_about("--region") => 2,
             Self::Load(err) => match err.kind() {
@@ -114,15 +114,17 @@ impl CliError {
                 LoadErrorKind::Io | LoadErrorKind::Cancelled => 6,
             },
             Self::Gpu(
-                GpuError::OutOfMemory { .. } | GpuError::FewAddresses { .. } | GpuError::OverLimit { .. },
+                GpuError::OutOfMemory { .. }
+                | GpuError::AddressSpaceTooSmall { .. }
+                | GpuError::OverLimit { .. },
             )
-            | Self::Threads(_) => 5,
+            | Self::ThreadStart(_) => 5,
             Self::Surroundings(err) => match err {
-                SurroundingsError::Io { .. } => 6,
-                SurroundingsError::TooLarge { .. } => 5,
-                SurroundingsError::Broken { .. }
-                | SurroundingsError::Shape { .. }
-                | SurroundingsError::Black { .. } => 3,
+                EnvironmentMapError::Io { .. } => 6,
+                EnvironmentMapError::TooLarge { .. } => 5,
+                EnvironmentMapError::Broken { .. }
+                | EnvironmentMapError::Shape { .. }
+                | EnvironmentMapError::Black { .. } => 3,
             },
             Self::Gpu(_) | Self::Window(_) => 4,
             Self::Read { .. } | Self::Export(_) | Self::Picture(_) | Self::Output(_) => 6,

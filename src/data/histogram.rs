@@ -1,7 +1,7 @@
 //! Histogram of the densities of a volume.
 
-use super::interrupt::Interrupt;
-use super::{Missing, Volume};
+use super::cancellation::CancelToken;
+use super::{MissingVoxels, Volume};
 
 /// Number of bins of a histogram: fine enough for 12-bit data whose object spans a tenth of the range.
 pub const HISTOGRAM_BINS: usize = 1024;
@@ -17,7 +17,7 @@ pub struct Histogram {
 
 impl Histogram {
     /// Counts a volume's voxels in [`HISTOGRAM_BINS`] bins.
-    pub fn of(volume: &Volume) -> Self {
+    pub fn from_volume(volume: &Volume) -> Self {
         Self::with_bins(volume, HISTOGRAM_BINS)
     }
 
@@ -25,11 +25,11 @@ impl Histogram {
         use rayon::prelude::*;
         let missing = volume.missing();
         let empty = || vec![0u64; bins];
-        let interrupt = Interrupt::here();
+        let interrupt = CancelToken::current();
         let counts = (0..volume.dims()[2])
             .into_par_iter()
             .fold(empty, |mut counts, z| {
-                if interrupt.is_due() {
+                if interrupt.should_stop() {
                     return counts;
                 }
                 let densities = volume.slice_densities(z);
@@ -44,7 +44,7 @@ impl Histogram {
                 a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
                 a
             });
-        Self { counts, total: (volume.voxel_count() - missing.map_or(0, Missing::count)) as u64 }
+        Self { counts, total: (volume.voxel_count() - missing.map_or(0, MissingVoxels::count)) as u64 }
     }
 
     /// Returns the density below which a share of `fraction` (0 … 1) of the voxels lies, to one bin.

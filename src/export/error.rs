@@ -24,7 +24,7 @@ pub enum ExportError {
     },
     /// The file format cannot hold the requested content.
     #[error("{what} ({path})")]
-    Unfit {
+    UnsupportedByFormat {
         /// Limitation of the format, and a suggestion.
         what: &'static str,
         /// Path of the file to be written.
@@ -52,12 +52,12 @@ pub enum ExportError {
 
 impl ExportError {
     /// Returns a function that wraps an I/O error with the path of the file.
-    pub(super) fn writing(path: &Path) -> impl Fn(std::io::Error) -> Self {
+    pub(super) fn io_error_for(path: &Path) -> impl Fn(std::io::Error) -> Self {
         move |source| Self::Write { path: path.to_owned(), source }
     }
 
     /// Returns a function that replaces an encoder's wrapped I/O error by one with the path of the file.
-    pub(super) fn about(path: &Path) -> impl Fn(Self) -> Self {
+    pub(super) fn with_path(path: &Path) -> impl Fn(Self) -> Self {
         move |err| match err {
             Self::Encode(png::EncodingError::IoError(source))
             | Self::Exr(exr::error::Error::Io(source))

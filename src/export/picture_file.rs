@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use super::animation::carried;
-use super::{ExportError, ReadPictureError, Rows, check_ending, exr_file, png_file};
-use crate::model::{Depth, ImageSpec};
+use super::animation::embedded_record;
+use super::{ExportError, PixelRows, ReadPictureError, check_extension, exr_file, png_file};
+use crate::model::{ImageSpec, PixelFormat};
 
 /// File format of a still picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -17,38 +17,38 @@ pub enum PictureFormat {
 
 impl PictureFormat {
     /// Returns the format of a file name: EXR for `.exr`, otherwise PNG.
-    pub fn of_path(path: &Path) -> Self {
+    pub fn from_path(path: &Path) -> Self {
         let is_exr = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
         if is_exr { Self::Exr } else { Self::Png }
     }
 
     /// Returns the depth in which this format stores a picture; PNG uses `wanted`, unless that is linear.
-    pub fn depth(self, wanted: Depth) -> Depth {
+    pub fn supported_depth(self, wanted: PixelFormat) -> PixelFormat {
         match (self, wanted) {
-            (Self::Exr, _) => Depth::Linear,
-            (Self::Png, Depth::Sixteen) => Depth::Sixteen,
-            (Self::Png, _) => Depth::Eight,
+            (Self::Exr, _) => PixelFormat::Linear,
+            (Self::Png, PixelFormat::Sixteen) => PixelFormat::Sixteen,
+            (Self::Png, _) => PixelFormat::Eight,
         }
     }
 }
 
 /// Writes a picture atomically, from bands of rows from the top.
 ///
-/// It embeds a record ([`crate::model::Record`]) as text. The encoding follows from the file name and from
-/// [`ImageSpec::depth`], which must be supported by the format ([`PictureFormat::depth`]).
+/// It embeds a record ([`crate::model::LookRecord`]) as text. The encoding follows from the file name and from
+/// [`ImageSpec::depth`], which must be supported by the format ([`PictureFormat::supported_depth`]).
 ///
 /// # Errors
 /// Returns the errors of `rows`; also when the format does not support the depth, or the file cannot be written.
 pub fn write_picture<E: From<ExportError>>(
     path: &Path,
-    shot: &ImageSpec,
+    image_spec: &ImageSpec,
     record: Option<&str>,
-    rows: &mut dyn FnMut() -> Result<Option<Rows>, E>,
+    rows: &mut dyn FnMut() -> Result<Option<PixelRows>, E>,
 ) -> Result<(), E> {
-    check_picture(path, shot)?;
-    match PictureFormat::of_path(path) {
-        PictureFormat::Png => png_file::write(path, shot, record, rows),
-        PictureFormat::Exr => exr_file::write(path, shot, record, rows),
+    check_picture(path, image_spec)?;
+    match PictureFormat::from_path(path) {
+        PictureFormat::Png => png_file::write(path, image_spec, record, rows),
+        PictureFormat::Exr => exr_file::write(path, image_spec, record, rows),
     }
 }
 
@@ -56,15 +56,19 @@ pub fn write_picture<E: From<ExportError>>(
 ///
 /// # Errors
 /// When the extension belongs to another format, or the format does not support the depth.
-pub fn check_picture(path: &Path, shot: &ImageSpec) -> Result<(), ExportError> {
-    check_ending(path, &["png", "exr"], "pictures are written as .png or .exr, and the name says as which")?;
-    let format = PictureFormat::of_path(path);
-    if format.depth(shot.depth) != shot.depth {
+pub fn check_picture(path: &Path, image_spec: &ImageSpec) -> Result<(), ExportError> {
+    check_extension(
+        path,
+        &["png", "exr"],
+        "pictures are written as .png or .exr, and the name says as which",
+    )?;
+    let format = PictureFormat::from_path(path);
+    if format.supported_depth(image_spec.depth) != image_spec.depth {
         let what = match format {
             PictureFormat::Png => "PNG files hold 8 or 16 bits; EXR files hold linear light",
             PictureFormat::Exr => "EXR files hold linear light; PNG files hold 8 or 16 bits",
         };
-        return Err(ExportError::Unfit { what, path: path.to_owned() });
+        return Err(ExportError::UnsupportedByFormat { what, path: path.to_owned() });
     }
     Ok(())
 }
@@ -74,7 +78,7 @@ pub fn check_picture(path: &Path, shot: &ImageSpec) -> Result<(), ExportError> {
 /// # Errors
 /// When the file cannot be read, is not a picture, or claims more pixels than this program ever writes.
 pub fn picture_size(path: &Path) -> Result<[u32; 2], ReadPictureError> {
-    match PictureFormat::of_path(path) {
+    match PictureFormat::from_path(path) {
         PictureFormat::Png => png_file::size(path),
         PictureFormat::Exr => exr_file::size(path),
     }
@@ -84,8 +88,8 @@ pub fn picture_size(path: &Path) -> Result<[u32; 2], ReadPictureError> {
 ///
 /// # Errors
 /// When the file cannot be read or is not a picture.
-pub fn read_picture(path: &Path) -> Result<([u32; 2], Rows), ReadPictureError> {
-    match PictureFormat::of_path(path) {
+pub fn read_picture(path: &Path) -> Result<([u32; 2], PixelRows), ReadPictureError> {
+    match PictureFormat::from_path(path) {
         PictureFormat::Png => png_file::read(path),
         PictureFormat::Exr => exr_file::read(path),
     }
@@ -102,10 +106,10 @@ pub fn may_carry_record(path: &Path) -> bool {
 /// # Errors
 /// When the file cannot be read or is not a picture.
 pub fn read_record(path: &Path) -> Result<Option<String>, ReadPictureError> {
-    if let Some(found) = carried::read_record(path) {
+    if let Some(found) = embedded_record::read_record(path) {
         return found;
     }
-    match PictureFormat::of_path(path) {
+    match PictureFormat::from_path(path) {
         PictureFormat::Png => png_file::read_record(path),
         PictureFormat::Exr => exr_file::read_record(path),
     }
@@ -118,26 +122,26 @@ mod tests {
     #[test]
     fn names_say_what_files_hold() {
         let folder = tempfile::tempdir().unwrap();
-        let mut shot = ImageSpec::new([1, 1]);
+        let mut image_spec = ImageSpec::new([1, 1]);
         for (name, depth, fits) in [
-            ("a.png", Depth::Eight, true),
-            ("a.PNG", Depth::Sixteen, true),
-            ("a.png", Depth::Linear, false),
-            ("a.exr", Depth::Eight, false),
-            ("a.EXR", Depth::Linear, true),
-            ("a.gif", Depth::Eight, false),
-            ("a.JPG", Depth::Eight, false),
-            ("v1.5", Depth::Eight, false),
-            ("a.nrrd", Depth::Eight, false),
-            ("a", Depth::Eight, false),
+            ("a.png", PixelFormat::Eight, true),
+            ("a.PNG", PixelFormat::Sixteen, true),
+            ("a.png", PixelFormat::Linear, false),
+            ("a.exr", PixelFormat::Eight, false),
+            ("a.EXR", PixelFormat::Linear, true),
+            ("a.gif", PixelFormat::Eight, false),
+            ("a.JPG", PixelFormat::Eight, false),
+            ("v1.5", PixelFormat::Eight, false),
+            ("a.nrrd", PixelFormat::Eight, false),
+            ("a", PixelFormat::Eight, false),
         ] {
-            shot.depth = depth;
+            image_spec.depth = depth;
             let mut rows = match depth {
-                Depth::Eight => Some(Rows::Bytes(vec![0; 4])),
-                _ => Some(Rows::Floats(vec![0.0; 4])),
+                PixelFormat::Eight => Some(PixelRows::Bytes(vec![0; 4])),
+                _ => Some(PixelRows::Floats(vec![0.0; 4])),
             };
             let mut next = || Ok::<_, ExportError>(rows.take());
-            let written = write_picture(&folder.path().join(name), &shot, None, &mut next);
+            let written = write_picture(&folder.path().join(name), &image_spec, None, &mut next);
             assert_eq!(written.is_ok(), fits, "{name} {depth:?}: {written:?}");
         }
         for (name, may) in [
@@ -150,7 +154,10 @@ mod tests {
         ] {
             assert_eq!(may_carry_record(Path::new(name)), may, "{name}");
         }
-        assert_eq!(PictureFormat::of_path(Path::new("a.exr")).depth(Depth::Sixteen), Depth::Linear);
+        assert_eq!(
+            PictureFormat::from_path(Path::new("a.exr")).supported_depth(PixelFormat::Sixteen),
+            PixelFormat::Linear
+        );
     }
 
     #[test]
@@ -158,22 +165,22 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         for name in ["a.png", "a.exr"] {
             let path = folder.path().join(name);
-            let depth = PictureFormat::of_path(&path).depth(Depth::Eight);
-            let shot = ImageSpec { depth, ..ImageSpec::new([2, 40]) };
+            let depth = PictureFormat::from_path(&path).supported_depth(PixelFormat::Eight);
+            let image_spec = ImageSpec { depth, ..ImageSpec::new([2, 40]) };
             let mut bands = 0;
             let mut next = || {
                 bands += 1;
                 match (bands, depth) {
-                    (1, Depth::Eight) => Ok(Some(Rows::Bytes(vec![0; 8 * 20]))),
-                    (1, _) => Ok(Some(Rows::Floats(vec![0.0; 8 * 20]))),
-                    _ => Err(ExportError::Unfit { what: "stop", path: "x".into() }),
+                    (1, PixelFormat::Eight) => Ok(Some(PixelRows::Bytes(vec![0; 8 * 20]))),
+                    (1, _) => Ok(Some(PixelRows::Floats(vec![0.0; 8 * 20]))),
+                    _ => Err(ExportError::UnsupportedByFormat { what: "stop", path: "x".into() }),
                 }
             };
-            let err = write_picture(&path, &shot, None, &mut next).unwrap_err();
+            let err = write_picture(&path, &image_spec, None, &mut next).unwrap_err();
             assert!(err.to_string().starts_with("stop"), "{name}: {err}");
             // Too few rows are an error as well.
             let mut next = || Ok::<_, ExportError>(None);
-            assert!(write_picture(&path, &shot, None, &mut next).is_err(), "{name}");
+            assert!(write_picture(&path, &image_spec, None, &mut next).is_err(), "{name}");
         }
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     }

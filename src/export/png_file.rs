@@ -3,17 +3,17 @@
 use std::io::{BufReader, BufWriter, Write as _};
 use std::path::Path;
 
-use super::files::{check_ending, open_regular, place, temporary_beside, write_atomically};
-use super::rows::{RECORD, word};
-use super::{ExportError, ReadPictureError, Rows};
-use crate::model::{Depth, ImageSpec, MAX_EDGE, MAX_LOOK_BYTES, made_by};
+use super::files::{check_extension, open_regular, rename_into_place, temporary_file_for, write_atomically};
+use super::rows::{RECORD_KEY, quantize_u16};
+use super::{ExportError, PixelRows, ReadPictureError};
+use crate::model::{ImageSpec, MAX_IMAGE_EDGE, MAX_LOOK_BYTES, PixelFormat, provenance_mark};
 
 /// Maximum number of bytes read before a picture's pixels, including texts and colour profiles of other programs, as
 /// stored: ten times what cameras write.
-const MOST_BEFORE: usize = 16 << 20;
+const MAX_METADATA_BYTES: usize = 16 << 20;
 
 /// Writes a picture of sRGB bytes, RGBA row by row, as PNG: RGB, or RGBA with straight alpha if it is transparent. It
-/// embeds a record ([`crate::model::Record`]) as text.
+/// embeds a record ([`crate::model::LookRecord`]) as text.
 ///
 /// # Errors
 /// Under the conditions of [`write_atomically`].
@@ -24,7 +24,7 @@ pub fn export_png(
     record: Option<&str>,
     path: &Path,
 ) -> Result<(), ExportError> {
-    check_ending(path, &["png"], "pictures of this kind are written as .png")?;
+    check_extension(path, &["png"], "pictures of this kind are written as .png")?;
     let bytes = if transparent {
         encode_png(size, png::ColorType::Rgba, shown, record)?
     } else {
@@ -47,9 +47,9 @@ pub fn encode_png(
     let mut encoder = png::Encoder::new(&mut png, width, height);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_color(color);
-    mark(&mut encoder)?;
+    add_software_text(&mut encoder)?;
     if let Some(record) = record {
-        encoder.add_itxt_chunk(RECORD.to_owned(), record.to_owned())?;
+        encoder.add_itxt_chunk(RECORD_KEY.to_owned(), record.to_owned())?;
     }
     let mut writer = encoder.write_header()?;
     writer.write_image_data(bytes)?;
@@ -58,42 +58,48 @@ pub fn encode_png(
 }
 
 /// Adds the name of this program to the file's metadata.
-pub(super) fn mark<W: std::io::Write>(encoder: &mut png::Encoder<'_, W>) -> Result<(), png::EncodingError> {
-    encoder.add_text_chunk("Software".to_owned(), made_by())
+pub(super) fn add_software_text<W: std::io::Write>(
+    encoder: &mut png::Encoder<'_, W>,
+) -> Result<(), png::EncodingError> {
+    encoder.add_text_chunk("Software".to_owned(), provenance_mark())
 }
 
 /// Writes a picture from bands of rows.
 pub(super) fn write<E: From<ExportError>>(
     path: &Path,
-    shot: &ImageSpec,
+    image_spec: &ImageSpec,
     record: Option<&str>,
-    rows: &mut dyn FnMut() -> Result<Option<Rows>, E>,
+    rows: &mut dyn FnMut() -> Result<Option<PixelRows>, E>,
 ) -> Result<(), E> {
-    let failed = ExportError::writing(path);
-    let not_encoded = |err| ExportError::about(path)(ExportError::Encode(err));
-    let file = temporary_beside(path)?;
+    let failed = ExportError::io_error_for(path);
+    let not_encoded = |err| ExportError::with_path(path)(ExportError::Encode(err));
+    let file = temporary_file_for(path)?;
     let mut out = BufWriter::new(file.reopen().map_err(&failed)?);
-    let mut encoder = png::Encoder::new(&mut out, shot.size[0], shot.size[1]);
-    encoder.set_depth(if shot.depth == Depth::Eight { png::BitDepth::Eight } else { png::BitDepth::Sixteen });
-    encoder.set_color(if shot.transparent { png::ColorType::Rgba } else { png::ColorType::Rgb });
-    mark(&mut encoder).map_err(not_encoded)?;
+    let mut encoder = png::Encoder::new(&mut out, image_spec.size[0], image_spec.size[1]);
+    encoder.set_depth(if image_spec.depth == PixelFormat::Eight {
+        png::BitDepth::Eight
+    } else {
+        png::BitDepth::Sixteen
+    });
+    encoder.set_color(if image_spec.transparent { png::ColorType::Rgba } else { png::ColorType::Rgb });
+    add_software_text(&mut encoder).map_err(not_encoded)?;
     if let Some(record) = record {
-        encoder.add_itxt_chunk(RECORD.to_owned(), record.to_owned()).map_err(not_encoded)?;
+        encoder.add_itxt_chunk(RECORD_KEY.to_owned(), record.to_owned()).map_err(not_encoded)?;
     }
     let mut writer = encoder.write_header().map_err(not_encoded)?;
     let mut stream = writer.stream_writer_with_size(1 << 20).map_err(not_encoded)?;
     while let Some(rows) = rows()? {
         let bytes = match rows {
-            Rows::Bytes(shown) if shot.transparent => shown,
-            Rows::Bytes(shown) => rgb(&shown),
-            Rows::Floats(shown) => words(&shown, shot.transparent),
+            PixelRows::Bytes(shown) if image_spec.transparent => shown,
+            PixelRows::Bytes(shown) => rgb(&shown),
+            PixelRows::Floats(shown) => to_u16_be(&shown, image_spec.transparent),
         };
         stream.write_all(&bytes).map_err(&failed)?;
     }
     stream.finish().map_err(not_encoded)?;
     writer.finish().map_err(not_encoded)?;
     out.flush().map_err(&failed)?;
-    Ok(place(file, path)?)
+    Ok(rename_into_place(file, path)?)
 }
 
 /// Returns the colours of a picture without alpha.
@@ -102,10 +108,12 @@ pub(super) fn rgb(shown: &[u8]) -> Vec<u8> {
 }
 
 /// Encodes values from 0 to 1 as 16-bit numbers, big-endian, with or without alpha.
-fn words(shown: &[f32], alpha: bool) -> Vec<u8> {
+fn to_u16_be(shown: &[f32], alpha: bool) -> Vec<u8> {
     let kept = if alpha { 4 } else { 3 };
     let texels = shown.chunks_exact(4);
-    texels.flat_map(|texel| texel[..kept].iter().flat_map(|&value| word(value).to_be_bytes())).collect()
+    texels
+        .flat_map(|texel| texel[..kept].iter().flat_map(|&value| quantize_u16(value).to_be_bytes()))
+        .collect()
 }
 
 /// Opens a PNG file for decoding.
@@ -116,13 +124,13 @@ fn reader(path: &Path) -> Result<image::ImageReader<BufReader<std::fs::File>>, R
 /// Reads the columns and rows of a PNG file.
 pub(super) fn size(path: &Path) -> Result<[u32; 2], ReadPictureError> {
     let size = reader(path)?.into_dimensions().map_err(|err| ReadPictureError::new(path, &err))?;
-    sizes_of_ours(path, size.into())
+    check_size(path, size.into())
 }
 
 /// Rejects sizes beyond those of any picture that this program writes.
-pub(super) fn sizes_of_ours(path: &Path, size: [u32; 2]) -> Result<[u32; 2], ReadPictureError> {
+pub(super) fn check_size(path: &Path, size: [u32; 2]) -> Result<[u32; 2], ReadPictureError> {
     let [width, height] = size;
-    if size.iter().all(|edge| (1..=MAX_EDGE).contains(edge)) {
+    if size.iter().all(|edge| (1..=MAX_IMAGE_EDGE).contains(edge)) {
         return Ok(size);
     }
     let why = format!("it has {width} × {height} pixels, which none of this program has");
@@ -130,7 +138,7 @@ pub(super) fn sizes_of_ours(path: &Path, size: [u32; 2]) -> Result<[u32; 2], Rea
 }
 
 /// Reads the pixels of a PNG file.
-pub(super) fn read(path: &Path) -> Result<([u32; 2], Rows), ReadPictureError> {
+pub(super) fn read(path: &Path) -> Result<([u32; 2], PixelRows), ReadPictureError> {
     let failed = |why: &dyn std::fmt::Display| ReadPictureError::new(path, why);
     let size = size(path)?;
     let [width, height] = size;
@@ -143,9 +151,9 @@ pub(super) fn read(path: &Path) -> Result<([u32; 2], Rows), ReadPictureError> {
     let is_deep = matches!(image.color(), image::ColorType::Rgb16 | image::ColorType::Rgba16);
     let rows = if is_deep {
         let words = image.to_rgba16().into_raw();
-        Rows::Floats(words.into_iter().map(|word| f32::from(word) / 65535.0).collect())
+        PixelRows::Floats(words.into_iter().map(|word| f32::from(word) / 65535.0).collect())
     } else {
-        Rows::Bytes(image.to_rgba8().into_raw())
+        PixelRows::Bytes(image.to_rgba8().into_raw())
     };
     Ok((size, rows))
 }
@@ -154,10 +162,10 @@ pub(super) fn read(path: &Path) -> Result<([u32; 2], Rows), ReadPictureError> {
 pub(super) fn read_record(path: &Path) -> Result<Option<String>, ReadPictureError> {
     let failed = |why: &dyn std::fmt::Display| ReadPictureError::new(path, why);
     let file = open_regular(path)?;
-    let limits = png::Limits { bytes: MOST_BEFORE };
+    let limits = png::Limits { bytes: MAX_METADATA_BYTES };
     let decoder = png::Decoder::new_with_limits(BufReader::new(file), limits);
     let reader = decoder.read_info().map_err(|err| failed(&err))?;
-    let found = reader.info().utf8_text.iter().find(|text| text.keyword == RECORD);
+    let found = reader.info().utf8_text.iter().find(|text| text.keyword == RECORD_KEY);
     let Some(mut text) = found.cloned() else { return Ok(None) };
     // Decompression stops at this length.
     text.decompress_text_with_limit(MAX_LOOK_BYTES)
@@ -191,7 +199,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
         let mut info = png::Info::with_size(1, 1);
-        let mut text = png::text_metadata::ITXtChunk::new(RECORD, "x".repeat(MAX_LOOK_BYTES + 1));
+        let mut text = png::text_metadata::ITXtChunk::new(RECORD_KEY, "x".repeat(MAX_LOOK_BYTES + 1));
         text.compressed = true;
         text.compress_text().unwrap();
         info.utf8_text.push(text);
@@ -211,16 +219,19 @@ mod tests {
         let path = folder.path().join("a.png");
         let value = |i: usize| i as f32 / 65535.0;
         for transparent in [false, true] {
-            let shot = ImageSpec { depth: Depth::Sixteen, transparent, ..ImageSpec::new([5, 4]) };
+            let image_spec = ImageSpec { depth: PixelFormat::Sixteen, transparent, ..ImageSpec::new([5, 4]) };
             let shown: Vec<f32> = (0..80).map(|i| value(i * 3)).collect();
             // Bands of three rows and of one row.
             let mut bands = vec![shown[60..].to_vec(), shown[..60].to_vec()];
-            let mut next = || Ok::<_, ExportError>(bands.pop().map(Rows::Floats));
-            super::super::write_picture(&path, &shot, None, &mut next).unwrap();
+            let mut next = || Ok::<_, ExportError>(bands.pop().map(PixelRows::Floats));
+            super::super::write_picture(&path, &image_spec, None, &mut next).unwrap();
             let expected = |i: usize| if i % 4 == 3 && !transparent { 65535 } else { i as u16 * 3 };
             let read = image::open(&path).unwrap().to_rgba16().into_raw();
             assert_eq!(read, (0..80).map(expected).collect::<Vec<_>>());
-            assert_eq!(read_picture(&path).unwrap(), ([5, 4], Rows::Floats(shown).as_written(&shot)));
+            assert_eq!(
+                read_picture(&path).unwrap(),
+                ([5, 4], PixelRows::Floats(shown).after_round_trip(&image_spec))
+            );
         }
     }
 }

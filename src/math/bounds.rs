@@ -4,14 +4,14 @@ use glam::DVec3;
 
 /// Axis-aligned bounding box; the code that builds it defines the space and unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bounds {
+pub struct Aabb {
     /// Corner with the smallest coordinates.
     pub min: DVec3,
     /// Corner with the largest coordinates.
     pub max: DVec3,
 }
 
-impl Bounds {
+impl Aabb {
     /// Returns the bounding box of a grid of `dims` voxels in index space, grown by `pad` voxels on every side.
     ///
     /// Voxel centres lie at integers, so the box without padding is `[-½, n − ½]` along each axis.
@@ -29,7 +29,7 @@ impl Bounds {
     }
 
     /// Returns the bounding box of the points; no points give an inverted box (`min` = +∞, `max` = −∞).
-    pub fn around(points: impl IntoIterator<Item = DVec3>) -> Self {
+    pub fn from_points(points: impl IntoIterator<Item = DVec3>) -> Self {
         let empty = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
         points
             .into_iter()
@@ -45,7 +45,7 @@ mod tests {
 
     #[test]
     fn grid_box_spans_whole_voxels() {
-        let bounds = Bounds::of_grid([4, 5, 6], 2.0);
+        let bounds = Aabb::of_grid([4, 5, 6], 2.0);
         assert_eq!(bounds.min, DVec3::splat(-2.5));
         assert_eq!(bounds.max, DVec3::new(5.5, 6.5, 7.5));
     }
@@ -53,8 +53,8 @@ mod tests {
     #[test]
     fn a_turned_box_is_wider() {
         let turn = DAffine3::from_rotation_z(std::f64::consts::FRAC_PI_4);
-        let corners = Bounds { min: DVec3::splat(-1.0), max: DVec3::splat(1.0) }.corners();
-        let turned = Bounds::around(corners.map(|corner| turn.transform_point3(corner)));
+        let corners = Aabb { min: DVec3::splat(-1.0), max: DVec3::splat(1.0) }.corners();
+        let turned = Aabb::from_points(corners.map(|corner| turn.transform_point3(corner)));
         assert!((turned.max.x - 2f64.sqrt()).abs() < 1e-12);
         assert!((turned.max.z - 1.0).abs() < 1e-12);
     }

@@ -4,15 +4,15 @@
 //! is f64; values are converted to f32 when they are uploaded to the GPU.
 
 mod bounds;
+mod clip_region;
 mod false_color;
 mod luminance;
-mod region;
 mod scene;
 mod srgb;
 
-pub use bounds::Bounds;
+pub use bounds::Aabb;
+pub use clip_region::{ClipRegion, HalfSpace};
 pub use false_color::false_color;
 pub use luminance::luminance;
-pub use region::{HalfSpace, Region};
 pub use scene::SceneSpace;
 pub use srgb::{linear_from_srgb, srgb_from_linear};

@@ -6,7 +6,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::Bounds;
+use super::Aabb;
 
 /// Transforms between a volume's index space and scene space, with voxel sizes in scene units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,9 +59,9 @@ impl SceneSpace {
     }
 
     /// Returns the box that can hold material: the grid grown by the kernel's radius of two voxels, in index space.
-    pub fn support_in_index(&self) -> Bounds {
+    pub fn support_in_index(&self) -> Aabb {
         // Voxel centres end at 0 and n − 1; a kernel of radius 2 reaches two voxels beyond them.
-        Bounds::of_grid(self.dims, 1.5)
+        Aabb::of_grid(self.dims, 1.5)
     }
 
     /// Returns the corners of [`Self::support_in_index`] in scene space.

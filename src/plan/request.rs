@@ -1,12 +1,12 @@
 //! Request to the renderer: volume, look, size and options of a picture.
 
 use super::PixelWindow;
-use crate::data::{Shown, VolumeId};
-use crate::model::{Depth, ImageSpec, Resolution, Settings};
+use crate::data::{DensityMapping, VolumeId};
+use crate::model::{ImageSpec, LightVolumeResolution, PixelFormat, Settings};
 
 /// Request for a picture: the volume, its look and the size.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Request {
+pub struct RenderRequest {
     /// Identity of the volume (`Volume::id`), which changes with its voxels and its geometry.
     pub volume: VolumeId,
     /// Complete look of the picture.
@@ -14,7 +14,7 @@ pub struct Request {
     /// Width and height, in pixels.
     pub size: [u32; 2],
     /// Resolution for previews, at which missing light volumes may be filled.
-    pub coarse: Option<Resolution>,
+    pub preview_resolution: Option<LightVolumeResolution>,
 }
 
 /// Identity of a volume as a picture shows it.
@@ -23,14 +23,14 @@ pub struct VolumeKey {
     /// Content hash of the volume, `Volume::content_id`.
     pub content_id: u64,
     /// Quantity that densities from 0 to 1 represent.
-    pub shown: Shown,
+    pub density_mapping: DensityMapping,
 }
 
-impl Request {
+impl RenderRequest {
     /// Returns the identity of the volume as this picture shows it.
-    pub fn shown_volume(&self) -> VolumeKey {
+    pub fn volume_key(&self) -> VolumeKey {
         let VolumeId { content_id, ranges, .. } = self.volume;
-        VolumeKey { content_id, shown: self.settings.shown(&ranges) }
+        VolumeKey { content_id, density_mapping: self.settings.shown_content(&ranges) }
     }
 }
 
@@ -44,7 +44,7 @@ pub struct RenderOptions {
     /// Skip empty space. Only tests that pictures stay the same, and measurements, switch it off.
     pub empty_space_skipping: bool,
     /// Fill light volumes everywhere, not only where the picture looks them up.
-    pub fill_everything: bool,
+    pub fill_all_light_voxels: bool,
     /// Minimum transmittance, below which a ray to the eye or from a light ends.
     pub min_transmittance: f32,
     /// Number of slabs per chunk of the light march, in place of the choice by memory and time.
@@ -61,7 +61,7 @@ pub struct RenderOptions {
     /// Number of samples per pixel along an edge.
     pub samples: u32,
     /// Bit depth of the displayed picture.
-    pub depth: Depth,
+    pub depth: PixelFormat,
 }
 
 impl Default for RenderOptions {
@@ -70,7 +70,7 @@ impl Default for RenderOptions {
             transparent: false,
             exposure: 1.0,
             empty_space_skipping: true,
-            fill_everything: false,
+            fill_all_light_voxels: false,
             // 1/16 of an 8-bit step.
             min_transmittance: 1.0 / 4096.0,
             chunk: None,
@@ -79,26 +79,26 @@ impl Default for RenderOptions {
             timed: false,
             part: None,
             samples: 1,
-            depth: Depth::Eight,
+            depth: PixelFormat::Eight,
         }
     }
 }
 
 impl RenderOptions {
     /// Creates the options for an exported image.
-    pub fn of_shot(shot: &ImageSpec) -> Self {
-        let ImageSpec { size: _, transparent, samples, depth, marks: _ } = *shot;
+    pub fn for_image(image_spec: &ImageSpec) -> Self {
+        let ImageSpec { size: _, transparent, samples, depth, marks: _ } = *image_spec;
         Self { transparent, samples, depth, ..Self::default() }
     }
 
     /// Returns the part of a picture that is displayed.
-    pub fn shown(&self, request: &Request) -> PixelWindow {
+    pub fn displayed_window(&self, request: &RenderRequest) -> PixelWindow {
         self.part.unwrap_or_else(|| request.size.into())
     }
 
     /// Returns the samples that are drawn for the displayed part.
-    pub fn window(&self, request: &Request) -> PixelWindow {
-        self.shown(request).finer(self.samples)
+    pub fn sample_window(&self, request: &RenderRequest) -> PixelWindow {
+        self.displayed_window(request).supersampled(self.samples)
     }
 
     /// Returns the optical depth that corresponds to [`Self::min_transmittance`].

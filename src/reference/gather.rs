@@ -6,51 +6,51 @@
 use glam::DVec3;
 
 use super::Reference;
-use super::field::classified::Side;
+use super::field::classified::TransferSide;
 use super::field::pyramid::MAX_LEVEL;
-use super::kernel::{Profile, cubic_b_spline, cubic_b_spline_slope};
-use crate::model::{Kernel, Quadrature};
+use super::kernel::{KernelProfile, cubic_b_spline, cubic_b_spline_slope};
+use crate::model::{ReconstructionKernel, SlabQuadrature};
 use crate::plan::SheetFrame;
 
 /// Returns the density at an index-space point, with the kernel stretched 2^`level` times.
 pub(super) fn density(
     reference: &Reference<'_>,
-    side: Side,
-    profile: &Profile,
+    side: TransferSide,
+    profile: &KernelProfile,
     point: DVec3,
     level: f64,
 ) -> f64 {
     let pyramid = reference.gathered_pyramid(side);
     let level = level.clamp(0.0, MAX_LEVEL as f64);
-    if profile.kernel == Kernel::Prefiltered || level >= 1.0 {
+    if profile.kernel == ReconstructionKernel::Prefiltered || level >= 1.0 {
         return pyramid.fetch(point, level);
     }
-    let narrow = with_kernel(reference, profile, point);
+    let narrow = kernel_sum(reference, profile, point);
     if level == 0.0 { narrow } else { narrow + (pyramid.fetch(point, 1.0) - narrow) * level }
 }
 
 /// Returns Σ ρ(v) · w(v) over the 4³ voxels around a point.
-fn with_kernel(reference: &Reference<'_>, profile: &Profile, point: DVec3) -> f64 {
-    weighed(reference, point, weights(profile, point))
+fn kernel_sum(reference: &Reference<'_>, profile: &KernelProfile, point: DVec3) -> f64 {
+    weighted_sum(reference, point, weights(profile, point))
 }
 
 /// Returns ∇ Σ ρ(v) · w(v) with the cubic B-spline, in index space: the spline's slope along one axis, its weight
 /// along the others.
-pub(super) fn slope(reference: &Reference<'_>, point: DVec3) -> DVec3 {
+pub(super) fn kernel_gradient(reference: &Reference<'_>, point: DVec3) -> DVec3 {
     let distances = point.fract_gl().to_array().map(|f| [f + 1.0, f, f - 1.0, f - 2.0]);
     let [wx, wy, wz] = distances.map(|axis| axis.map(cubic_b_spline));
     let [sx, sy, sz] = distances.map(|axis| axis.map(cubic_b_spline_slope));
-    let along = |of| weighed(reference, point, of);
+    let along = |of| weighted_sum(reference, point, of);
     DVec3::new(along([sx, wy, wz]), along([wx, sy, wz]), along([wx, wy, sz]))
 }
 
 /// Returns the weights along each axis of the voxels around a point.
-fn weights(profile: &Profile, point: DVec3) -> [[f64; 4]; 3] {
+fn weights(profile: &KernelProfile, point: DVec3) -> [[f64; 4]; 3] {
     point.fract_gl().to_array().map(|fraction| profile.four_weights(fraction))
 }
 
 /// Returns Σ ρ(v) · w(v) for given weights along each axis.
-fn weighed(reference: &Reference<'_>, point: DVec3, weights: [[f64; 4]; 3]) -> f64 {
+fn weighted_sum(reference: &Reference<'_>, point: DVec3, weights: [[f64; 4]; 3]) -> f64 {
     let [wx, wy, wz] = weights;
     let [x, y, z] = point.floor().to_array().map(|c| c as i64 - 1);
     let term = |at: usize| {
@@ -66,7 +66,7 @@ fn weighed(reference: &Reference<'_>, point: DVec3, weights: [[f64; 4]; 3]) -> f
 pub(super) fn slab_mean(
     reference: &Reference<'_>,
     frame: &SheetFrame,
-    quadrature: Quadrature,
+    quadrature: SlabQuadrature,
     [i, j, k]: [f64; 3],
     of: impl Fn(DVec3, f64) -> f64,
 ) -> f64 {

@@ -1,7 +1,7 @@
 //! Reconstruction kernels, as functions of one coordinate in voxels; in space a kernel is the product of three
 //! (isotropic in index space). `h` of P eq. 10.
 
-use crate::model::Kernel;
+use crate::model::ReconstructionKernel;
 
 /// Radius of the kernels, in voxels.
 const RADIUS: f64 = 2.0;
@@ -43,45 +43,45 @@ pub fn tent(t: f64) -> f64 {
     (1.0 - t.abs()).max(0.0)
 }
 
-/// Kernel of the settings along one axis, possibly widened by a [`super::Fault`].
+/// Kernel of the settings along one axis, possibly widened by a [`super::ReferenceFault`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Profile {
+pub(crate) struct KernelProfile {
     /// Kernel chosen in the settings.
-    pub kernel: Kernel,
+    pub kernel: ReconstructionKernel,
     /// Width of the kernel relative to the correct one; 1 without a fault.
     pub width: f64,
 }
 
-impl Profile {
+impl KernelProfile {
     /// Returns the distance from the middle beyond which the kernel is zero.
     pub(super) fn reach(&self) -> f64 {
         RADIUS * self.width
     }
 
     /// Returns the reconstruction kernel of the paper's footprints: area 1, not normalised on the grid.
-    pub(super) fn of_density(&self, t: f64) -> f64 {
+    pub(super) fn density_weight(&self, t: f64) -> f64 {
         let t = t / self.width;
         let value = match self.kernel {
-            Kernel::BSpline => cubic_b_spline(t),
+            ReconstructionKernel::BSpline => cubic_b_spline(t),
             // (2π)^−½ σ⁻¹ exp(−t²/2σ²), cut at two voxels.
-            Kernel::Gaussian { sigma } if t.abs() < RADIUS => {
+            ReconstructionKernel::Gaussian { sigma } if t.abs() < RADIUS => {
                 gaussian(t, sigma) / (sigma * std::f64::consts::TAU.sqrt())
             }
-            Kernel::Gaussian { .. } => 0.0,
+            ReconstructionKernel::Gaussian { .. } => 0.0,
             // Convolution of the blur [1/12, 10/12, 1/12] with the tent.
-            Kernel::Prefiltered => (tent(t - 1.0) + 10.0 * tent(t) + tent(t + 1.0)) / 12.0,
+            ReconstructionKernel::Prefiltered => (tent(t - 1.0) + 10.0 * tent(t) + tent(t + 1.0)) / 12.0,
         };
         value / self.width
     }
 
     /// Returns the weight of a sheet's pixel for a voxel of the light volume, to be divided by the sum of weights.
-    pub(super) fn of_light(&self, t: f64) -> f64 {
+    pub(super) fn light_weight(&self, t: f64) -> f64 {
         let t = t / self.width;
         match self.kernel {
-            Kernel::BSpline => cubic_b_spline(t),
-            Kernel::Gaussian { sigma } if t.abs() < RADIUS => gaussian(t, sigma),
-            Kernel::Gaussian { .. } => 0.0,
-            Kernel::Prefiltered => tent(t),
+            ReconstructionKernel::BSpline => cubic_b_spline(t),
+            ReconstructionKernel::Gaussian { sigma } if t.abs() < RADIUS => gaussian(t, sigma),
+            ReconstructionKernel::Gaussian { .. } => 0.0,
+            ReconstructionKernel::Prefiltered => tent(t),
         }
     }
 
@@ -90,12 +90,14 @@ impl Profile {
     pub(super) fn four_weights(&self, fraction: f64) -> [f64; 4] {
         let distances: [f64; 4] = std::array::from_fn(|tap| (fraction + 1.0 - tap as f64) / self.width);
         match self.kernel {
-            Kernel::Gaussian { sigma } => {
+            ReconstructionKernel::Gaussian { sigma } => {
                 let weights = distances.map(|t| gaussian(t, sigma));
                 let sum: f64 = weights.iter().sum();
                 weights.map(|weight| weight / sum)
             }
-            Kernel::BSpline | Kernel::Prefiltered => distances.map(|t| cubic_b_spline(t) / self.width),
+            ReconstructionKernel::BSpline | ReconstructionKernel::Prefiltered => {
+                distances.map(|t| cubic_b_spline(t) / self.width)
+            }
         }
     }
 }
@@ -119,16 +121,20 @@ pub(super) fn quadrature_nodes() -> [(f64, f64); 8] {
 mod tests {
     use super::*;
 
-    const KERNELS: [Kernel; 3] = [Kernel::BSpline, Kernel::Gaussian { sigma: 0.6 }, Kernel::Prefiltered];
+    const KERNELS: [ReconstructionKernel; 3] = [
+        ReconstructionKernel::BSpline,
+        ReconstructionKernel::Gaussian { sigma: 0.6 },
+        ReconstructionKernel::Prefiltered,
+    ];
 
     #[test]
     fn footprint_kernels_have_area_one_and_the_same_width() {
         for kernel in KERNELS {
-            let profile = Profile { kernel, width: 1.0 };
+            let profile = KernelProfile { kernel, width: 1.0 };
             let moment = |power: i32| -> f64 {
                 (-2000..2000)
                     .map(|n| (f64::from(n) + 0.5) / 1000.0)
-                    .map(|t| profile.of_density(t) * t.powi(power) / 1000.0)
+                    .map(|t| profile.density_weight(t) * t.powi(power) / 1000.0)
                     .sum()
             };
             assert!((moment(0) - 1.0).abs() < 2e-3, "{kernel:?}: area {}", moment(0));
@@ -138,9 +144,9 @@ mod tests {
 
     #[test]
     fn gather_weights_sum_to_one_unless_at_fault() {
-        for kernel in [Kernel::BSpline, Kernel::Gaussian { sigma: 0.4 }] {
+        for kernel in [ReconstructionKernel::BSpline, ReconstructionKernel::Gaussian { sigma: 0.4 }] {
             for step in 0..10 {
-                let weights = Profile { kernel, width: 1.0 }.four_weights(f64::from(step) / 10.0);
+                let weights = KernelProfile { kernel, width: 1.0 }.four_weights(f64::from(step) / 10.0);
                 assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-12);
             }
         }

@@ -4,22 +4,24 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::back_project::Attenuation;
-use super::field::classified::Side;
-use super::kernel::Profile;
-use super::remains::cut::Remaining;
+use super::back_project::AttenuationVolume;
+use super::extent::cut::UncutRegion;
+use super::field::classified::TransferSide;
+use super::kernel::KernelProfile;
 use super::{Reference, gather};
-use crate::model::{BakedTransfer, Deposit, Kernel, LightKind, Quadrature, SceneLight};
+use crate::model::{
+    BakedTransfer, DepositMode, LightGeometry, ReconstructionKernel, SceneLight, SlabQuadrature,
+};
 
 /// Sampler of shadow rays to one light.
 pub(super) struct ShadowRays<'r> {
     reference: &'r Reference<'r>,
     /// Point lights that represent the light; usually the light itself.
     points: Vec<SceneLight>,
-    profile: Profile,
-    quadrature: Quadrature,
+    profile: KernelProfile,
+    quadrature: SlabQuadrature,
     table: BakedTransfer,
-    remaining: Remaining,
+    remaining: UncutRegion,
 }
 
 impl<'r> ShadowRays<'r> {
@@ -27,24 +29,24 @@ impl<'r> ShadowRays<'r> {
     pub(super) fn new(
         reference: &'r Reference<'r>,
         index: usize,
-        kernel: Kernel,
-        quadrature: Quadrature,
+        kernel: ReconstructionKernel,
+        quadrature: SlabQuadrature,
     ) -> Self {
-        Self::of_points(reference, reference.points(index), (kernel, quadrature))
+        Self::from_points(reference, reference.points(index), (kernel, quadrature))
     }
 
-    fn of_points(
+    fn from_points(
         reference: &'r Reference<'r>,
         points: Vec<SceneLight>,
-        (kernel, quadrature): (Kernel, Quadrature),
+        (kernel, quadrature): (ReconstructionKernel, SlabQuadrature),
     ) -> Self {
         Self {
             reference,
             points,
             profile: reference.profile(reference.gathered_kernel(kernel)),
             quadrature,
-            table: reference.gathered_table(Side::Lighting),
-            remaining: reference.shading(),
+            table: reference.gathered_table(TransferSide::Lighting),
+            remaining: reference.attenuating_region(),
         }
     }
 
@@ -59,8 +61,8 @@ impl<'r> ShadowRays<'r> {
         let place = self.reference.scene.scene_from_index.transform_point3(point);
         let is_above = |light: &&SceneLight| {
             let towards = match light.kind {
-                LightKind::Parallel => light.direction(),
-                LightKind::Perspective => DVec3::from(light.position) - place,
+                LightGeometry::Parallel => light.direction(),
+                LightGeometry::Perspective => DVec3::from(light.position) - place,
             };
             up == DVec3::ZERO || towards.dot(up) > 0.0
         };
@@ -74,8 +76,8 @@ impl<'r> ShadowRays<'r> {
         let reference = self.reference;
         let place = reference.scene.scene_from_index.transform_point3(point);
         let (towards, reach) = match light.kind {
-            LightKind::Parallel => (light.direction(), f64::INFINITY),
-            LightKind::Perspective => {
+            LightGeometry::Parallel => (light.direction(), f64::INFINITY),
+            LightGeometry::Perspective => {
                 let away = DVec3::from(light.position) - place;
                 (away.normalize_or(DVec3::Z), away.length())
             }
@@ -84,8 +86,8 @@ impl<'r> ShadowRays<'r> {
         let step = reference.settings.shadows.ray_step(&reference.scene);
         let forward = reference.scene.index_from_scene.transform_vector3(towards);
         let first = match reference.settings.shadows.deposit {
-            Deposit::Front => 1.0,
-            Deposit::SlabMean => 0.5,
+            DepositMode::Front => 1.0,
+            DepositMode::SlabMean => 0.5,
         };
         // There is no material outside the grid.
         let across = 2.0 * reference.scene.support_radius()
@@ -106,7 +108,7 @@ impl<'r> ShadowRays<'r> {
                 let offsets = self.quadrature.offsets();
                 let density = |offset: &f64| {
                     let at = point + forward * (middle + offset * length) + reference.kernel_shift();
-                    gather::density(reference, Side::Lighting, &self.profile, at, 0.0)
+                    gather::density(reference, TransferSide::Lighting, &self.profile, at, 0.0)
                 };
                 let there = |offset: &f64| {
                     let at = point + forward * (middle + offset * length) + reference.kernel_shift();
@@ -114,23 +116,23 @@ impl<'r> ShadowRays<'r> {
                 };
                 let there = offsets.iter().map(there).sum::<f64>() / offsets.len() as f64;
                 let density = offsets.iter().map(density).sum::<f64>() / offsets.len() as f64;
-                let share = there * reference.share_that_shades(&self.remaining, at);
+                let share = there * reference.attenuating_share(&self.remaining, at);
                 share * self.table.sample(density)[3] * length * light.density_scale
             })
             .sum();
-        (-optical_depth).exp() * cone.share(-cone.axis.dot(towards))
+        (-optical_depth).exp() * cone.attenuation(-cone.axis.dot(towards))
     }
 }
 
 impl Reference<'_> {
     /// Computes the attenuation volume of a point light by a ray from every voxel (P §3.4).
-    pub(super) fn raycast(&self, light: &SceneLight, divisor: usize) -> Attenuation {
+    pub(super) fn raycast(&self, light: &SceneLight, divisor: usize) -> AttenuationVolume {
         let shadows = &self.settings.shadows;
-        let mut volume = Attenuation::unlit(self.scene.dims, divisor);
-        let rays = ShadowRays::of_points(self, vec![*light], (shadows.kernel, shadows.quadrature));
+        let mut volume = AttenuationVolume::unattenuated(self.scene.dims, divisor);
+        let rays = ShadowRays::from_points(self, vec![*light], (shadows.kernel, shadows.quadrature));
         volume.values = (0..volume.values.len())
             .into_par_iter()
-            .map(|voxel| rays.attenuation(volume.point_of(voxel)))
+            .map(|voxel| rays.attenuation(volume.voxel_centre(voxel)))
             .collect();
         volume
     }

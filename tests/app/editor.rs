@@ -1,12 +1,12 @@
 //! Tests of the transfer function editor: points, selection, colour maps and freehand drawing.
 
-use chiaroscuro::app::{App, Options};
+use chiaroscuro::app::{App, WindowOptions};
 use chiaroscuro::model::{ControlPoint, Easing, Settings, TransferFunction};
 use eframe::egui::{self, Event, Modifiers, PointerButton, Pos2, Role, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{SCENE, click, drag, turn_wheel, wait_until_idle, window, window_with};
+use crate::harness::{SCENE, adjusted_window, click, drag, turn_wheel, wait_until_idle, window};
 
 #[test]
 fn the_transfer_function_is_edited_in_its_plot() {
@@ -46,9 +46,12 @@ fn a_point_beyond_the_ends_of_the_curve_brings_one_that_holds_the_rest() {
         settings.transfer.points = vec![point(0.4, 0.0), point(0.5, 0.8), point(0.6, 0.0)];
         settings
     };
-    let options =
-        Options { source: Some(SCENE.into()), adjust: Some(Box::new(adjust)), ..Options::default() };
-    let mut harness = window_with(options, Vec2::new(760.0, 1140.0));
+    let options = WindowOptions {
+        source: Some(SCENE.into()),
+        adjust: Some(Box::new(adjust)),
+        ..WindowOptions::default()
+    };
+    let mut harness = adjusted_window(options, Vec2::new(760.0, 1140.0));
     let transfer = |harness: &Harness<'_, App>| harness.state().settings().transfer.clone();
     let before = transfer(&harness);
     let (first, last) = (before.points[0].value, before.points[2].value);

@@ -6,22 +6,22 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::{
-    bare_window, click, drag, drag_with, flick, in_one_frame, picture, render, slow_window, stroke,
-    wait_until_idle, window,
+    click, drag, drag_with, flick, key_stroke, picture, render, send_in_one_frame, slow_window,
+    wait_until_idle, window, window_without_overlays,
 };
 
 #[test]
 fn the_window_shows_what_the_renderer_makes() {
-    let mut harness = bare_window();
+    let mut harness = window_without_overlays();
     assert_eq!(harness.state().volume_name(), Some("chair"));
     harness.check_accessibility();
     let (shown, size) = picture(&mut harness);
-    assert!(shown == render(&harness, size).shown, "the window shows other bytes than the renderer makes");
+    assert!(shown == render(&harness, size).display, "the window shows other bytes than the renderer makes");
 }
 
 #[test]
 fn lights_and_camera_follow_the_mouse() {
-    let mut harness = bare_window();
+    let mut harness = window_without_overlays();
     let (before, _) = picture(&mut harness);
     let rebuilds = harness.state().light_rebuilds();
 
@@ -36,7 +36,7 @@ fn lights_and_camera_follow_the_mouse() {
     assert_eq!(harness.state().light_rebuilds(), rebuilds, "orbiting refilled a light volume");
     let (turned, size) = picture(&mut harness);
     assert!(turned != before);
-    assert!(turned == render(&harness, size).shown, "after an orbit");
+    assert!(turned == render(&harness, size).display, "after an orbit");
 
     // Drags the handle of the key light.
     harness.hover_at(rect.center());
@@ -51,7 +51,7 @@ fn lights_and_camera_follow_the_mouse() {
     assert!(harness.state().light_rebuilds() > rebuilds);
     let (lit, size) = picture(&mut harness);
     assert!(lit != turned);
-    assert!(lit == render(&harness, size).shown, "after a light drag");
+    assert!(lit == render(&harness, size).display, "after a light drag");
 
     // Undo restores the light's position.
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
@@ -88,28 +88,28 @@ fn handles_are_taken_without_hovering() {
 
 /// A flick drags what was pressed, however far the pointer has moved when the next frame begins.
 #[test]
-fn what_is_flicked_within_a_frame_is_what_was_pressed() {
+fn flicks_drag_the_pressed_item() {
     let mut harness = slow_window(vec2(760.0, 1140.0));
     let camera = harness.state().settings().camera.clone();
     let flicks = |harness: &mut Harness<'static, App>, what: &str, by: egui::Vec2| {
         let before = harness.state().settings().clone();
         let from = harness.get_by_label(what).rect().center();
-        in_one_frame(harness, flick(from, by));
+        send_in_one_frame(harness, flick(from, by));
         let after = harness.state().settings().clone();
         assert_eq!(after.camera, camera, "{what}: the camera turned");
         assert_ne!(after, before, "{what} stayed");
         (before, after)
     };
     // A number of the panel is dragged by its slider.
-    let (before, after) = flicks_slider(&mut harness);
+    let (before, after) = flick_strength_slider(&mut harness);
     assert_ne!(after, before);
     let (before, after) = flicks(&mut harness, "Light handle Key", vec2(-60.0, 45.0));
     assert_ne!(after.lights[0].position, before.lights[0].position);
-    in_one_frame(&mut harness, stroke(egui::Key::K, Modifiers::NONE).to_vec());
+    send_in_one_frame(&mut harness, key_stroke(egui::Key::K, Modifiers::NONE).to_vec());
     let (_, after) = flicks(&mut harness, "Crop box, side +z", vec2(0.0, 60.0));
     assert!(after.cuts.crop.high[2] < 1.0);
-    let keys = [egui::Key::K, egui::Key::X].map(|key| stroke(key, Modifiers::NONE));
-    in_one_frame(&mut harness, keys.concat());
+    let keys = [egui::Key::K, egui::Key::X].map(|key| key_stroke(key, Modifiers::NONE));
+    send_in_one_frame(&mut harness, keys.concat());
     let place = |harness: &Harness<'_, App>, part| {
         harness.get_by_label(&format!("Clip plane, {part}")).rect().center()
     };
@@ -120,11 +120,11 @@ fn what_is_flicked_within_a_frame_is_what_was_pressed() {
 }
 
 /// Flicks the slider of the shadow strength, and returns the strength before and after.
-fn flicks_slider(harness: &mut Harness<'static, App>) -> (f64, f64) {
+fn flick_strength_slider(harness: &mut Harness<'static, App>) -> (f64, f64) {
     let strength = |harness: &Harness<'_, App>| harness.state().settings().shadows.strength;
     let before = strength(harness);
     let slider = harness.get_by_role_and_label(egui::Role::Slider, "Strength").rect();
-    in_one_frame(harness, flick(slider.center(), vec2(-20.0, 70.0)));
+    send_in_one_frame(harness, flick(slider.center(), vec2(-20.0, 70.0)));
     (before, strength(harness))
 }
 
@@ -139,10 +139,10 @@ fn keys_that_are_struck_within_a_frame_are_counted() {
         harness.run_steps(12);
     }
     assert!(harness.state().settings().lights[0].intensity > 1.3 * before.lights[0].intensity);
-    let undo = stroke(egui::Key::Z, Modifiers::COMMAND);
+    let undo = key_stroke(egui::Key::Z, Modifiers::COMMAND);
     let modifiers = |modifiers| vec![Event::ModifiersChanged(modifiers)];
     let events = [modifiers(Modifiers::COMMAND), vec![undo; 3].concat(), modifiers(Modifiers::NONE)];
-    in_one_frame(&mut harness, events.concat());
+    send_in_one_frame(&mut harness, events.concat());
     assert_eq!(harness.state().settings().lights, before.lights);
     wait_until_idle(&mut harness);
 }
@@ -176,7 +176,7 @@ fn level_and_window_are_dragged_in_the_picture() {
 }
 
 #[test]
-fn hoods_are_opened_by_their_rim() {
+fn spotlights_widen_by_their_rim_handle() {
     let mut harness = window();
     click(&mut harness, "Positional");
     click(&mut harness, "Spotlight");
@@ -202,7 +202,7 @@ fn hoods_are_opened_by_their_rim() {
 /// Size handle of a parallel light, which is shown on a sphere around the volume; handles of other lights may be
 /// outside the picture.
 #[test]
-fn lights_grow_by_their_borders() {
+fn size_handles_resize_lights() {
     let mut harness = window();
     click(&mut harness, "Disc");
     harness.run_steps(3);
@@ -226,7 +226,7 @@ fn lights_grow_by_their_borders() {
 
 #[test]
 fn the_probe_says_what_light_arrives() {
-    let mut harness = bare_window();
+    let mut harness = window_without_overlays();
     let (before, _) = picture(&mut harness);
     harness.key_press(egui::Key::I);
     let (rect, _) = harness.state().viewport_rect().unwrap();

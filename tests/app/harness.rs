@@ -3,59 +3,59 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use chiaroscuro::app::{App, Options, wgpu_setup};
+use chiaroscuro::app::{App, WindowOptions, wgpu_setup};
 use chiaroscuro::data::Dataset;
 use chiaroscuro::data::load::{LoadControl, LoadOptions};
 use chiaroscuro::data::{ValueRanges, open};
-use chiaroscuro::gpu::{Context, Picture, RenderOptions, Renderer};
-use chiaroscuro::model::{Record, Settings};
+use chiaroscuro::gpu::{GpuContext, RenderOptions, RenderedPicture, Renderer};
+use chiaroscuro::model::{LookRecord, Settings};
 use eframe::egui::{self, Event, Modifiers, PointerButton, Pos2, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 /// Longest wait for a condition: a minute, because software adapters on shared cores are slow.
-pub(crate) const PATIENCE: Duration = Duration::from_mins(1);
+pub(crate) const WAIT_TIMEOUT: Duration = Duration::from_mins(1);
 
 pub(crate) const SCENE: &str = "builtin:chair:32";
 
 /// Creates the usual test window, taller than wide panels need, so that nothing is scrolled out of view.
 pub(crate) fn window() -> Harness<'static, App> {
-    let options = Options { source: Some(SCENE.into()), ..Options::default() };
-    window_with(options, Vec2::new(760.0, 1140.0))
+    let options = WindowOptions { source: Some(SCENE.into()), ..WindowOptions::default() };
+    adjusted_window(options, Vec2::new(760.0, 1140.0))
 }
 
 /// Creates a window of some size, in points. Unless the options adjust the first look, the balance is not kept, so
 /// that settings change only when the test changes them.
-pub(crate) fn window_with(options: Options, size: Vec2) -> Harness<'static, App> {
-    paced_window_with(options, size, QUICK_FRAME_S)
+pub(crate) fn adjusted_window(options: WindowOptions, size: Vec2) -> Harness<'static, App> {
+    paced_window_with(options, size, FRAME_S)
 }
 
 /// Creates a window of some size whose frames take 0.3 s of simulated time.
 pub(crate) fn slow_window(size: Vec2) -> Harness<'static, App> {
-    paced_window_with(Options { source: Some(SCENE.into()), ..Options::default() }, size, 0.3)
+    paced_window_with(WindowOptions { source: Some(SCENE.into()), ..WindowOptions::default() }, size, 0.3)
 }
 
 /// Duration of a frame in simulated time, in seconds.
-const QUICK_FRAME_S: f32 = 0.1;
+const FRAME_S: f32 = 0.1;
 
-fn paced_window_with(mut options: Options, size: Vec2, frame_s: f32) -> Harness<'static, App> {
+fn paced_window_with(mut options: WindowOptions, size: Vec2, frame_s: f32) -> Harness<'static, App> {
     options.adjust.get_or_insert_with(|| {
         Box::new(|mut settings| {
             settings.shadows.keep_balanced = false;
             settings
         })
     });
-    let mut harness = untouched_window_of(options, size, frame_s);
+    let mut harness = automatic_window_with(options, size, frame_s);
     wait_until_idle(&mut harness);
     harness
 }
 
 /// Creates a window with the automatic steps of a first look enabled, before its picture is finished.
-pub(crate) fn untouched_window(options: Options) -> Harness<'static, App> {
-    untouched_window_of(options, Vec2::new(760.0, 1140.0), QUICK_FRAME_S)
+pub(crate) fn automatic_window(options: WindowOptions) -> Harness<'static, App> {
+    automatic_window_with(options, Vec2::new(760.0, 1140.0), FRAME_S)
 }
 
-fn untouched_window_of(options: Options, size: Vec2, frame_s: f32) -> Harness<'static, App> {
+fn automatic_window_with(options: WindowOptions, size: Vec2, frame_s: f32) -> Harness<'static, App> {
     let mut setup = wgpu_setup();
     // Uses the first adapter like the tests of the renderer, software included.
     setup.power_preference = wgpu::PowerPreference::None;
@@ -67,14 +67,14 @@ fn untouched_window_of(options: Options, size: Vec2, frame_s: f32) -> Harness<'s
 }
 
 /// Creates a window without overlays on the picture, whose bytes can be compared.
-pub(crate) fn bare_window() -> Harness<'static, App> {
+pub(crate) fn window_without_overlays() -> Harness<'static, App> {
     let mut harness = window();
     harness.key_press(egui::Key::G);
     harness.run_steps(3);
     harness
 }
 
-/// Runs frames until a condition holds; fails after [`PATIENCE`].
+/// Runs frames until a condition holds; fails after [`WAIT_TIMEOUT`].
 pub(crate) fn wait_until(harness: &mut Harness<'_, App>, what: &str, condition: impl Fn(&App) -> bool) {
     let start = Instant::now();
     loop {
@@ -82,7 +82,7 @@ pub(crate) fn wait_until(harness: &mut Harness<'_, App>, what: &str, condition: 
         if condition(harness.state()) {
             return;
         }
-        assert!(start.elapsed() < PATIENCE, "{what}: errors {:?}", harness.state().errors());
+        assert!(start.elapsed() < WAIT_TIMEOUT, "{what}: errors {:?}", harness.state().errors());
         std::thread::sleep(Duration::from_millis(2));
     }
 }
@@ -112,7 +112,7 @@ pub(crate) fn drag_with(harness: &mut Harness<'_, App>, button: PointerButton, f
 
 /// Sends events to the window in one frame, as if they arrived during a slow frame, and runs frames until they are
 /// handled.
-pub(crate) fn in_one_frame(harness: &mut Harness<'_, App>, events: Vec<Event>) {
+pub(crate) fn send_in_one_frame(harness: &mut Harness<'_, App>, events: Vec<Event>) {
     harness.input_mut().events.extend(events);
     harness.run_steps(20);
 }
@@ -132,7 +132,7 @@ pub(crate) fn flick(from: Pos2, by: Vec2) -> Vec<Event> {
 }
 
 /// Keyboard events for a text of letters, digits and punctuation.
-pub(crate) fn keys_of(text: &str) -> Vec<Event> {
+pub(crate) fn key_events(text: &str) -> Vec<Event> {
     let sign = |sign: char| {
         let name = match sign {
             '.' => "Period".to_owned(),
@@ -141,14 +141,14 @@ pub(crate) fn keys_of(text: &str) -> Vec<Event> {
             _ => sign.to_uppercase().to_string(),
         };
         let key = egui::Key::from_name(&name).expect("a key");
-        let [down, up] = stroke(key, Modifiers::NONE);
+        let [down, up] = key_stroke(key, Modifiers::NONE);
         [down, Event::Text(sign.to_string()), up]
     };
     text.chars().flat_map(sign).collect()
 }
 
 /// Events of a key stroke: press and release.
-pub(crate) fn stroke(key: egui::Key, modifiers: Modifiers) -> [Event; 2] {
+pub(crate) fn key_stroke(key: egui::Key, modifiers: Modifiers) -> [Event; 2] {
     [true, false].map(|pressed| Event::Key { key, physical_key: None, pressed, repeat: false, modifiers })
 }
 
@@ -164,7 +164,7 @@ pub(crate) fn turn_wheel(harness: &Harness<'_, App>, points: f32) {
 }
 
 /// Presses and releases the primary button at a position, a number of times.
-pub(crate) fn press(harness: &mut Harness<'_, App>, at: Pos2, times: usize) {
+pub(crate) fn click_at(harness: &mut Harness<'_, App>, at: Pos2, times: usize) {
     harness.hover_at(at);
     harness.step();
     for pressed in [true, false].repeat(times) {
@@ -194,20 +194,24 @@ pub(crate) fn picture(harness: &mut Harness<'_, App>) -> (Vec<u8>, [u32; 2]) {
 }
 
 /// Renders the window's settings with a renderer on another device.
-pub(crate) fn render(harness: &Harness<'_, App>, size: [u32; 2]) -> Picture {
+pub(crate) fn render(harness: &Harness<'_, App>, size: [u32; 2]) -> RenderedPicture {
     render_with(harness, size, &RenderOptions::default())
 }
 
-pub(crate) fn render_with(harness: &Harness<'_, App>, size: [u32; 2], options: &RenderOptions) -> Picture {
-    let (dataset, mut renderer) = beside();
+pub(crate) fn render_with(
+    harness: &Harness<'_, App>,
+    size: [u32; 2],
+    options: &RenderOptions,
+) -> RenderedPicture {
+    let (dataset, mut renderer) = second_renderer();
     let settings = harness.state().settings();
     renderer.render(&dataset, settings, size, options).expect("a picture")
 }
 
 /// Volume of the window, and a renderer on another device.
-pub(crate) fn beside() -> (Dataset, Renderer) {
+pub(crate) fn second_renderer() -> (Dataset, Renderer) {
     let volume = open(SCENE, &LoadOptions::default(), &LoadControl::new()).expect("a built-in volume");
-    let context = Context::headless().expect("an adapter");
+    let context = GpuContext::headless().expect("an adapter");
     (Dataset::new(volume), Renderer::new(&context).expect("a renderer"))
 }
 
@@ -218,9 +222,9 @@ pub(crate) fn click(harness: &mut Harness<'_, App>, label: &str) {
 
 /// File dropped on the window.
 #[derive(Debug)]
-pub(crate) struct Dropped(pub(crate) PathBuf);
+pub(crate) struct DroppedFile(pub(crate) PathBuf);
 
-impl egui::DroppedFile for Dropped {
+impl egui::DroppedFile for DroppedFile {
     fn path(&self) -> &std::path::Path {
         &self.0
     }
@@ -231,9 +235,9 @@ impl egui::DroppedFile for Dropped {
 }
 
 /// Look that the latest run has autosaved in a folder.
-pub(crate) fn kept_look(folder: &std::path::Path) -> Option<Settings> {
+pub(crate) fn autosaved_look(folder: &std::path::Path) -> Option<Settings> {
     let files = std::fs::read_dir(folder.join("runs")).ok()?.map(|file| file.expect("an entry").path());
     let latest = files.filter(|file| file.extension().is_some_and(|ending| ending == "json")).max()?;
-    let record = Record::read(&std::fs::read_to_string(latest).expect("a text")).expect("a record");
+    let record = LookRecord::parse(&std::fs::read_to_string(latest).expect("a text")).expect("a record");
     Some(record.apply(&Settings::default(), &ValueRanges::UNIT).expect("settings").0)
 }

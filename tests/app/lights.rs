@@ -7,7 +7,7 @@ use eframe::egui::{self, Event, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{PATIENCE, click, wait_until_idle, window};
+use crate::harness::{WAIT_TIMEOUT, click, wait_until_idle, window};
 
 #[test]
 fn lights_are_set_by_the_keyboard() {
@@ -56,7 +56,7 @@ fn lights_are_tried_on_the_volume() {
     harness.run_steps(3);
     let begin = Instant::now();
     while harness.query_by_label("From above").is_none() {
-        assert!(begin.elapsed() < PATIENCE, "no pictures");
+        assert!(begin.elapsed() < WAIT_TIMEOUT, "no pictures");
         harness.step();
         std::thread::sleep(Duration::from_millis(5));
     }
@@ -77,7 +77,7 @@ fn presets_are_tried_on_the_volume() {
     let begin = Instant::now();
     // Waits until the last picture is finished.
     while harness.query_by_label("Refresh").is_none() {
-        assert!(begin.elapsed() < PATIENCE, "no pictures");
+        assert!(begin.elapsed() < WAIT_TIMEOUT, "no pictures");
         harness.step();
         std::thread::sleep(Duration::from_millis(5));
     }
@@ -114,7 +114,7 @@ fn commands_are_found_by_name() {
 
 /// The palette reports a missing feature with its nearest commands, and says when nothing is found.
 #[test]
-fn what_is_missing_is_said() {
+fn missing_features_are_reported() {
     let mut harness = window();
     let type_words = |harness: &mut Harness<'_, App>, words: &str| {
         harness.key_press(egui::Key::Escape);

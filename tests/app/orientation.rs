@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use chiaroscuro::app::{App, Options};
+use chiaroscuro::app::{App, WindowOptions};
 use chiaroscuro::model::{Camera, SceneAxis, Settings};
 use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{SCENE, click, wait_until, wait_until_idle, window_with};
+use crate::harness::{SCENE, adjusted_window, click, wait_until, wait_until_idle};
 
 fn settings(harness: &Harness<'_, App>) -> Settings {
     harness.state().settings().clone()
@@ -31,7 +31,7 @@ fn assert_same_view(a: &Camera, b: &Camera) {
     let views = [a, b].map(Camera::scene_from_view);
     assert_eq!(a.up, b.up);
     assert!((0..3).all(|axis| (views[0].col(axis) - views[1].col(axis)).length() < 1e-9), "{a:?} and {b:?}");
-    assert!((a.eye() - b.eye()).length() < 1e-6, "{a:?} and {b:?}");
+    assert!((a.position() - b.position()).length() < 1e-6, "{a:?} and {b:?}");
 }
 
 /// Writes a slab that is long in x, shorter in y and thin in z, surrounded by zeros.
@@ -51,7 +51,10 @@ fn the_object_lies_down_stands_up_and_stays_so() {
     write_slab(&second);
     let start = |source: PathBuf| {
         let (source, storage) = (Some(source), Some(storage.path().to_owned()));
-        window_with(Options { source, storage, ..Options::default() }, Vec2::new(760.0, 1140.0))
+        adjusted_window(
+            WindowOptions { source, storage, ..WindowOptions::default() },
+            Vec2::new(760.0, 1140.0),
+        )
     };
     let mut harness = start(first);
     let flat = settings(&harness);

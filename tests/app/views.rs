@@ -4,7 +4,7 @@ use chiaroscuro::app::App;
 use eframe::egui::{self, Modifiers, vec2};
 use egui_kittest::Harness;
 
-use crate::harness::{bare_window, drag, picture, press, turn_wheel, wait_until_idle, window};
+use crate::harness::{click_at, drag, picture, turn_wheel, wait_until_idle, window, window_without_overlays};
 
 #[test]
 fn views_are_found_kept_and_found_again() {
@@ -42,14 +42,14 @@ fn views_are_found_kept_and_found_again() {
 
     // A double click makes the point under the pointer the camera's target.
     let at = rect.center() + vec2(0.0, 30.0);
-    press(&mut harness, at, 2);
+    click_at(&mut harness, at, 2);
     assert_ne!(camera(&harness).target, first.target, "there is something there");
     wait_until_idle(&mut harness);
 }
 
 #[test]
 fn two_looks_share_the_picture() {
-    let mut harness = bare_window();
+    let mut harness = window_without_overlays();
     let (rect, size) = harness.state().viewport_rect().expect("a picture");
     let (before, _) = picture(&mut harness);
     let fills = harness.state().light_rebuilds();

@@ -10,7 +10,7 @@ mod convert;
 mod data;
 mod inputs;
 mod light;
-mod limits;
+mod memory_limits;
 mod outputs;
 mod render;
 mod replay;

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-use crate::sources::{Source, files};
+use crate::sources::{SourceFile, source_files};
 
 /// Folders and scripts of the project with which a path in a document begins.
 const ROOMS: [&str; 10] = [
@@ -28,11 +28,11 @@ fn root() -> &'static Path {
 }
 
 /// All documents, with paths below the top folder.
-fn documents() -> Vec<Source> {
-    let below = files("docs", "md").into_iter();
-    let below = below.map(|file| Source { path: format!("docs/{}", file.path), ..file });
+fn documents() -> Vec<SourceFile> {
+    let below = source_files("docs", "md").into_iter();
+    let below = below.map(|file| SourceFile { path: format!("docs/{}", file.path), ..file });
     let text = |path: &str| fs::read_to_string(root().join(path)).expect("documents are text");
-    TOP.into_iter().map(|path| Source { path: path.to_owned(), text: text(path) }).chain(below).collect()
+    TOP.into_iter().map(|path| SourceFile { path: path.to_owned(), text: text(path) }).chain(below).collect()
 }
 
 /// Paths in code spans and code blocks, without arguments and line numbers.
@@ -58,7 +58,7 @@ fn is_template(path: &str) -> bool {
 }
 
 /// Paths of a document, below the top folder, that do not exist.
-fn missing(document: &Source) -> Vec<String> {
+fn missing(document: &SourceFile) -> Vec<String> {
     let folder = Path::new(&document.path).parent().unwrap_or(Path::new(""));
     let named =
         paths_in_code(&document.text).into_iter().filter(|path| !is_template(path)).map(PathBuf::from);
@@ -94,10 +94,10 @@ fn missing_paths_are_reported() {
     let text = "`src/lib.rs:3`, `src/no_such.rs`, `src/gpu/NAME.rs`, `a/b`, \
                 [here](docs/USING.md#a), [gone](no.md), [out](https://a.b)\n\
                 ```\nscript/test ARGS\nscript/no_such\n```\n`tests/no_such*`";
-    let found = missing(&Source { path: "README.md".to_owned(), text: text.to_owned() });
+    let found = missing(&SourceFile { path: "README.md".to_owned(), text: text.to_owned() });
     let names = ["script/no_such", "src/no_such.rs", "tests/no_such*", "no.md"];
     assert_eq!(found, names.map(|name| format!("README.md names {name}")));
     let text = "[up](../README.md) [beside](LABORATORY.md) [gone](gone.md)";
-    let found = missing(&Source { path: "docs/USING.md".to_owned(), text: text.to_owned() });
+    let found = missing(&SourceFile { path: "docs/USING.md".to_owned(), text: text.to_owned() });
     assert_eq!(found, ["docs/USING.md names docs/gone.md"]);
 }

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use crate::paths::{crates, paths};
-use crate::sources::{Source, files};
+use crate::module_paths::{crates, paths};
+use crate::sources::{SourceFile, source_files};
 use crate::tokens::tokens;
 
 /// Modules from the lowest layer up. Each may import those before it.
@@ -22,9 +22,9 @@ const CONFINED: [(&str, &[&str]); 4] = [
     ("wgpu", &["gpu", "app"]),
 ];
 
-fn violations(file: &Source) -> Vec<String> {
-    let Source { path, text } = file;
-    let top = file.top();
+fn violations(file: &SourceFile) -> Vec<String> {
+    let SourceFile { path, text } = file;
+    let top = file.top_module();
     let mut found = Vec::new();
     let tokens = tokens(text);
     for (name, allowed) in CONFINED {
@@ -42,7 +42,7 @@ fn violations(file: &Source) -> Vec<String> {
         found.push(format!("{path} is in {top}, which has no place in the order of modules"));
         return found;
     };
-    let module = if top == "main" { Vec::new() } else { file.module() };
+    let module = if top == "main" { Vec::new() } else { file.module_path() };
     let roots: BTreeSet<String> =
         paths(&tokens, &module).into_iter().filter_map(|path| path.into_iter().next()).collect();
     for root in roots {
@@ -63,7 +63,7 @@ fn violations(file: &Source) -> Vec<String> {
 
 #[test]
 fn source_files_keep_the_order_of_modules() {
-    let files = files("src", "rs");
+    let files = source_files("src", "rs");
     assert!(files.len() > 50, "the check must see the sources");
     let found: Vec<_> = files.iter().flat_map(violations).collect();
     assert!(found.is_empty(), "\n{}", found.join("\n"));
@@ -82,7 +82,7 @@ fn the_order_is_that_of_the_documentation() {
 }
 
 fn violations_of(path: &str, text: &str) -> Vec<String> {
-    violations(&Source { path: path.to_owned(), text: text.to_owned() })
+    violations(&SourceFile { path: path.to_owned(), text: text.to_owned() })
 }
 
 #[test]

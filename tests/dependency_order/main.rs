@@ -3,11 +3,12 @@
 //! stay short, and folders have few entries.
 
 mod advisories;
-mod circles;
-mod disk;
+mod disk_writes;
 mod documents;
-mod form;
+mod file_form;
+mod import_cycles;
 mod layers;
-mod paths;
+mod module_paths;
 mod sources;
 mod tokens;
+mod words;

@@ -4,27 +4,27 @@ use std::fs;
 use std::path::Path;
 
 /// Source file with its path and text.
-pub(crate) struct Source {
+pub(crate) struct SourceFile {
     /// Path below the folder that was searched, with `/` between folders.
     pub(crate) path: String,
     pub(crate) text: String,
 }
 
-impl Source {
+impl SourceFile {
     /// Module path below the root: folders and stem, without `mod`.
-    pub(crate) fn module(&self) -> Vec<&str> {
+    pub(crate) fn module_path(&self) -> Vec<&str> {
         let stem = self.path.strip_suffix(".rs").unwrap_or(&self.path);
         stem.split('/').filter(|part| *part != "mod").collect()
     }
 
     /// Top-level module that contains the file.
-    pub(crate) fn top(&self) -> &str {
-        self.module()[0]
+    pub(crate) fn top_module(&self) -> &str {
+        self.module_path()[0]
     }
 }
 
 /// Paths of all files below a folder of the project, sorted.
-pub(crate) fn paths(folder: &str) -> Vec<String> {
+pub(crate) fn file_paths(folder: &str) -> Vec<String> {
     fn walk(folder: &Path, root: &Path, found: &mut Vec<String>) {
         for entry in fs::read_dir(folder).expect("the folder can be listed") {
             let path = entry.expect("the folder can be listed").path();
@@ -44,12 +44,12 @@ pub(crate) fn paths(folder: &str) -> Vec<String> {
 }
 
 /// All files below a folder of the project with this extension.
-pub(crate) fn files(folder: &str, ending: &str) -> Vec<Source> {
+pub(crate) fn source_files(folder: &str, ending: &str) -> Vec<SourceFile> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     let text = |path: &str| fs::read_to_string(root.join(path)).expect("sources are text");
-    paths(folder)
+    file_paths(folder)
         .into_iter()
         .filter(|path| Path::new(path).extension().is_some_and(|found| found == ending))
-        .map(|path| Source { text: text(&path), path })
+        .map(|path| SourceFile { text: text(&path), path })
         .collect()
 }

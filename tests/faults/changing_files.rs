@@ -11,28 +11,29 @@ use chiaroscuro::data::open;
 use crate::random::Random;
 
 /// Edge in voxels; 32 MiB, long enough to be changed during the read.
-const EDGE: usize = 256;
+const EDGE_VOXELS: usize = 256;
 
 /// Voxel data of a constant volume.
-fn data(value: u8) -> Vec<u8> {
-    vec![value; EDGE * EDGE * EDGE * 2]
+fn voxel_data(value: u8) -> Vec<u8> {
+    vec![value; EDGE_VOXELS * EDGE_VOXELS * EDGE_VOXELS * 2]
 }
 
 /// Change of a file during the read.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Change {
-    Cut,
+enum FileChange {
+    Truncated,
     Overwritten,
     Replaced,
     Removed,
 }
 
-const CHANGES: [Change; 4] = [Change::Cut, Change::Overwritten, Change::Replaced, Change::Removed];
+const CHANGES: [FileChange; 4] =
+    [FileChange::Truncated, FileChange::Overwritten, FileChange::Replaced, FileChange::Removed];
 
-impl Change {
-    fn happen(self, path: &Path, random: &mut Random, other: &[u8]) {
+impl FileChange {
+    fn apply(self, path: &Path, random: &mut Random, other: &[u8]) {
         match self {
-            Self::Cut => {
+            Self::Truncated => {
                 let file = OpenOptions::new().write(true).open(path).expect("it is there");
                 file.set_len(random.below(other.len()) as u64).expect("it can be cut");
             }
@@ -53,15 +54,15 @@ impl Change {
 }
 
 /// Changes files a number of times, each at a random time of the read.
-fn change(count: usize) {
+fn change_files_while_reading(count: usize) {
     let folder = tempfile::tempdir().expect("a folder");
-    let name = format!("v_{EDGE}x{EDGE}x{EDGE}_uint16");
+    let name = format!("v_{EDGE_VOXELS}x{EDGE_VOXELS}x{EDGE_VOXELS}_uint16");
     let paths = [folder.path().join(format!("{name}.raw")), folder.path().join("apart.nhdr")];
     let header = format!(
-        "NRRD0004\ntype: uint16\ndimension: 3\nsizes: {EDGE} {EDGE} {EDGE}\nencoding: raw\nendian: little\ndata file: {name}.raw\n\n"
+        "NRRD0004\ntype: uint16\ndimension: 3\nsizes: {EDGE_VOXELS} {EDGE_VOXELS} {EDGE_VOXELS}\nencoding: raw\nendian: little\ndata file: {name}.raw\n\n"
     );
     fs::write(&paths[1], header).expect("room");
-    let contents = [data(3), data(200)];
+    let contents = [voxel_data(3), voxel_data(200)];
     let load = |path: &Path| open(path, &LoadOptions::default(), &LoadControl::new());
     fs::write(&paths[0], &contents[0]).expect("room");
     let begin = Instant::now();
@@ -80,14 +81,14 @@ fn change(count: usize) {
         let result = std::thread::scope(|threads| {
             let loader = threads.spawn(|| load(path));
             std::thread::sleep(after);
-            change.happen(&paths[0], &mut random, &contents[1]);
+            change.apply(&paths[0], &mut random, &contents[1]);
             loader.join().expect("no panic")
         });
         match result {
             // Either all of the old data or all of the new.
             Ok(volume) => {
                 let id = volume.content_id();
-                assert!(id == old || (id == new && change == Change::Replaced), "{change:?} mixes");
+                assert!(id == old || (id == new && change == FileChange::Replaced), "{change:?} mixes");
             }
             Err(err) => {
                 refused += 1;
@@ -102,11 +103,11 @@ fn change(count: usize) {
 
 #[test]
 fn files_that_change_are_refused_or_read_as_they_were() {
-    change(16);
+    change_files_while_reading(16);
 }
 
 #[test]
 #[ignore = "a minute"]
 fn files_that_change_at_any_time_are_refused_or_read_as_they_were() {
-    change(160);
+    change_files_while_reading(160);
 }

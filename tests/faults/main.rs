@@ -5,10 +5,10 @@
 
 mod changing_files;
 mod hostile;
-mod kills;
-mod many_volumes;
+mod killed_writers;
 mod mutations;
 mod pictures;
 mod random;
 mod refusing_disks;
 mod samples;
+mod volume_leaks;

@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use chiaroscuro::data::load::{LoadControl, LoadError, LoadOptions, RawFormat, load};
 use chiaroscuro::data::synthetic::builtin;
 use chiaroscuro::data::{Histogram, Samples, ValueRange, Volume};
-use chiaroscuro::model::auto;
+use chiaroscuro::model::first_look;
 
-use crate::manifest::{Facts, manifest};
+use crate::manifest::{ManifestEntry, read_manifest};
 
 /// Files of a folder with one of these extensions, sorted.
-pub(crate) fn files(folder: &Path, endings: &[&str]) -> Vec<PathBuf> {
+pub(crate) fn files_with_extension(folder: &Path, endings: &[&str]) -> Vec<PathBuf> {
     let mut found: Vec<_> = fs::read_dir(folder)
         .unwrap_or_else(|err| panic!("{}: {err}", folder.display()))
         .map(|entry| entry.expect("the folder can be listed").path())
@@ -27,7 +27,7 @@ pub(crate) fn open(path: &Path, raw: RawFormat) -> Result<Volume, LoadError> {
 }
 
 /// All differences between a volume and the known facts about its file.
-fn differences(volume: &Volume, facts: &Facts) -> Vec<String> {
+fn manifest_differences(volume: &Volume, facts: &ManifestEntry) -> Vec<String> {
     let mut found = Vec::new();
     if facts.dims.is_some_and(|dims| dims != volume.dims()) {
         found.push(format!("{:?} voxels, {:?} expected", volume.dims(), facts.dims));
@@ -55,22 +55,22 @@ fn differences(volume: &Volume, facts: &Facts) -> Vec<String> {
 
 /// All faults of the first look at a volume.
 fn first_look_flaws(volume: &Volume) -> Vec<String> {
-    let settings = auto::first_settings(volume, &Histogram::of(volume));
+    let settings = first_look::first_settings(volume, &Histogram::from_volume(volume));
     let mut found = Vec::new();
     let values: Vec<f64> = settings.transfer.points.iter().map(|point| point.value).collect();
     if !values.windows(2).all(|pair| pair[0] <= pair[1]) {
         found.push(format!("control points do not ascend: {values:?}"));
     }
     // As pictures show it: missing voxels are left out, and values beyond the range are clamped to it.
-    let shown = volume.showing(settings.shown_range(&volume.ranges()));
+    let shown = volume.with_density_mapping(settings.shown_range(&volume.ranges()));
     let [nx, ny, nz] = shown.dims();
     let places = (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])));
-    let (mut there, mut visible) = (0usize, 0usize);
+    let (mut present, mut visible) = (0usize, 0usize);
     for density in places.filter_map(|place| shown.density_at(place)) {
-        there += 1;
+        present += 1;
         visible += usize::from(settings.transfer.opacity_at(shown.value_of(density)) > 0.05);
     }
-    let share = visible as f64 / there as f64;
+    let share = visible as f64 / present as f64;
     println!("{}: {:.1} % of the voxels are visible", volume.name(), share * 100.0);
     // A smaller share is an empty picture; more than two thirds is a shapeless block. (The Marschner–Lobb signal
     // fills more of its cube than any scan.)
@@ -85,7 +85,7 @@ fn first_look_flaws(volume: &Volume) -> Vec<String> {
 
 /// Loads files as the manifest describes them; returns the volumes, or fails with all differences.
 pub(crate) fn load_all(folder: &Path, paths: &[PathBuf]) -> Vec<Volume> {
-    let facts = manifest(folder);
+    let facts = read_manifest(folder);
     let (mut volumes, mut wrong) = (Vec::new(), Vec::new());
     for path in paths {
         let name = path.strip_prefix(folder).expect("it is below").to_string_lossy().replace('\\', "/");
@@ -98,7 +98,9 @@ pub(crate) fn load_all(folder: &Path, paths: &[PathBuf]) -> Vec<Volume> {
         let spacing_mm = if is_raw { facts.spacing_mm } else { None };
         match open(path, RawFormat { spacing_mm, ..RawFormat::default() }) {
             Ok(volume) => {
-                wrong.extend(differences(&volume, facts).into_iter().map(|flaw| format!("{name}: {flaw}")));
+                wrong.extend(
+                    manifest_differences(&volume, facts).into_iter().map(|flaw| format!("{name}: {flaw}")),
+                );
                 volumes.push(volume);
             }
             Err(err) => wrong.push(format!("{name}: {err}")),
@@ -121,18 +123,21 @@ pub(crate) fn assert_good_first_looks(volumes: &[Volume]) {
 
 pub(crate) fn wrong_facts_and_looks_are_noticed() {
     let ball = builtin("sphere", Some(16)).expect("it can be made");
-    let right =
-        Facts { dims: Some([16; 3]), voxel_type: Some("uint8".to_owned()), spacing_mm: Some([8.0; 3]) };
-    assert_eq!(differences(&ball, &right), Vec::<String>::new());
-    let wrong = Facts {
+    let right = ManifestEntry {
+        dims: Some([16; 3]),
+        voxel_type: Some("uint8".to_owned()),
+        spacing_mm: Some([8.0; 3]),
+    };
+    assert_eq!(manifest_differences(&ball, &right), Vec::<String>::new());
+    let wrong = ManifestEntry {
         dims: Some([16, 16, 17]),
         voxel_type: Some("int8".to_owned()),
         spacing_mm: Some([8.0, 8.0, 8.1]),
     };
-    assert_eq!(differences(&ball, &wrong).len(), 3);
+    assert_eq!(manifest_differences(&ball, &wrong).len(), 3);
 
     let empty = Volume::with_spacing("empty", [8; 3], glam::DVec3::ONE, Samples::U8(vec![0; 512]))
         .expect("a volume of one value");
     assert!(!first_look_flaws(&empty).is_empty(), "all of it looks the same");
-    assert!(!differences(&empty, &Facts::default()).is_empty(), "only one value");
+    assert!(!manifest_differences(&empty, &ManifestEntry::default()).is_empty(), "only one value");
 }

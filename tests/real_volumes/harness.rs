@@ -8,14 +8,14 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
 /// Named test with its check.
-pub(crate) struct Trial {
+pub(crate) struct NamedTest {
     /// Name of the test, with the missing data as a prefix, if any.
     name: String,
     ignored: bool,
     check: Box<dyn Fn()>,
 }
 
-impl Trial {
+impl NamedTest {
     /// Creates a test that is ignored if something is missing. If run nevertheless, it fails.
     pub(crate) fn new(name: &str, missing: Option<String>, check: impl Fn() + 'static) -> Self {
         let Some(missing) = missing else {
@@ -28,7 +28,7 @@ impl Trial {
 
 /// Options of the test run.
 #[derive(Debug, Default)]
-struct Asked {
+struct TestOptions {
     list: bool,
     exact: bool,
     /// True to run only ignored tests.
@@ -38,7 +38,7 @@ struct Asked {
     skip: Vec<String>,
 }
 
-impl Asked {
+impl TestOptions {
     fn new(args: impl IntoIterator<Item = String>) -> Self {
         let mut asked = Self::default();
         let mut args = args.into_iter();
@@ -62,7 +62,7 @@ impl Asked {
         if self.exact { name == filter } else { name.contains(filter) }
     }
 
-    fn is_meant(&self, trial: &Trial) -> bool {
+    fn selects(&self, trial: &NamedTest) -> bool {
         let is_chosen = self.filters.is_empty() || self.filters.iter().any(|f| self.matches(&trial.name, f));
         let is_left_out = self.skip.iter().any(|filter| self.matches(&trial.name, filter));
         is_chosen && !is_left_out && (trial.ignored || !self.ignored)
@@ -70,15 +70,15 @@ impl Asked {
 
     /// Returns true if a test is run. Tests without their data run only under their full names, even if ignored tests
     /// are included.
-    fn runs(&self, trial: &Trial) -> bool {
+    fn runs(&self, trial: &NamedTest) -> bool {
         !trial.ignored || self.exact && (self.ignored || self.include_ignored)
     }
 }
 
 /// Lists or runs the tests selected by the arguments; fails if any of them fails.
-pub(crate) fn run(trials: &[Trial]) -> ExitCode {
-    let asked = Asked::new(std::env::args().skip(1));
-    let meant: Vec<_> = trials.iter().filter(|trial| asked.is_meant(trial)).collect();
+pub(crate) fn run(trials: &[NamedTest]) -> ExitCode {
+    let asked = TestOptions::new(std::env::args().skip(1));
+    let meant: Vec<_> = trials.iter().filter(|trial| asked.selects(trial)).collect();
     if asked.list {
         for trial in meant {
             println!("{}: test", trial.name);
@@ -107,9 +107,9 @@ pub(crate) fn run(trials: &[Trial]) -> ExitCode {
 
 /// Test of the harness: tests without their data are ignored.
 pub(crate) fn tests_without_their_data_are_ignored() {
-    let asked = |line: &str| Asked::new(line.split_whitespace().map(str::to_owned));
-    let here = Trial::new("here", None, || {});
-    let absent = Trial::new("absent", Some("needs DATA".to_owned()), || {});
+    let asked = |line: &str| TestOptions::new(line.split_whitespace().map(str::to_owned));
+    let here = NamedTest::new("here", None, || {});
+    let absent = NamedTest::new("absent", Some("needs DATA".to_owned()), || {});
     assert_eq!(absent.name, "[needs DATA] absent");
     for (line, meant, run) in [
         ("", [true, true], [true, false]),
@@ -122,7 +122,7 @@ pub(crate) fn tests_without_their_data_are_ignored() {
         ("--exact absent --ignored", [false, false], [true, true]),
     ] {
         let asked = asked(line);
-        assert_eq!([&here, &absent].map(|trial| asked.is_meant(trial)), meant, "{line}");
+        assert_eq!([&here, &absent].map(|trial| asked.selects(trial)), meant, "{line}");
         assert_eq!([&here, &absent].map(|trial| asked.runs(trial)), run, "{line}");
     }
     assert!(catch_unwind(AssertUnwindSafe(|| (here.check)())).is_ok());

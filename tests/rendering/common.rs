@@ -1,12 +1,12 @@
 //! Shared helpers of the rendering tests: a device and ways to render.
 
 pub(crate) use chiaroscuro::data::Dataset;
-use chiaroscuro::gpu::{Context, Picture, RenderOptions, Renderer, ShaderLibrary};
+use chiaroscuro::gpu::{GpuContext, RenderOptions, RenderedPicture, Renderer, ShaderLibrary};
 use chiaroscuro::model::Settings;
 
 /// Opens a device, or fails the test: a check that did not run must be seen.
-pub(crate) fn context() -> Context {
-    Context::headless().unwrap_or_else(|err| panic!("the rendering tests need a graphics adapter: {err}"))
+pub(crate) fn context() -> GpuContext {
+    GpuContext::headless().unwrap_or_else(|err| panic!("the rendering tests need a graphics adapter: {err}"))
 }
 
 /// Renders a picture with default options.
@@ -15,30 +15,30 @@ pub(crate) fn render(
     loaded: &Dataset,
     settings: &Settings,
     size: [u32; 2],
-) -> Picture {
+) -> RenderedPicture {
     renderer.render(loaded, settings, size, &RenderOptions::default()).expect("the picture is rendered")
 }
 
 /// Attenuation volume of a light, filled everywhere.
-pub(crate) fn attenuation(
+pub(crate) fn full_attenuation(
     renderer: &mut Renderer,
     loaded: &Dataset,
     settings: &Settings,
     light: usize,
 ) -> Vec<f32> {
-    let options = RenderOptions { fill_everything: true, ..RenderOptions::default() };
+    let options = RenderOptions { fill_all_light_voxels: true, ..RenderOptions::default() };
     renderer.draw(loaded, settings, [8, 8], &options).expect("the light volume is filled");
-    let request = chiaroscuro::plan::Request {
+    let request = chiaroscuro::plan::RenderRequest {
         volume: loaded.volume().id(),
         settings: settings.clone(),
         size: [8, 8],
-        coarse: None,
+        preview_resolution: None,
     };
     renderer.attenuation(&request, light).expect("it is read back").expect("the light has a volume").values
 }
 
 /// Creates a renderer whose shaders have `from` replaced by `to`.
-pub(crate) fn damaged(from: &str, to: &str) -> Renderer {
+pub(crate) fn damaged_renderer(from: &str, to: &str) -> Renderer {
     let context = context();
     let shaders = ShaderLibrary::with_mutation(&context, from, to);
     Renderer::with_shaders(&context, shaders).expect("a renderer")

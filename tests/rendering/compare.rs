@@ -3,7 +3,7 @@
 
 /// Upper limits for a comparison's errors.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Limit {
+pub(crate) struct ErrorLimit {
     /// Largest absolute difference that is allowed.
     pub(crate) max: f64,
     /// Largest root mean square of the differences that is allowed.
@@ -12,7 +12,7 @@ pub(crate) struct Limit {
 
 /// Result of a comparison of two lists.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Difference {
+pub(crate) struct ErrorMeasure {
     /// Largest absolute difference of two values.
     pub(crate) max: f64,
     /// Index of the largest difference.
@@ -22,10 +22,10 @@ pub(crate) struct Difference {
 }
 
 /// Difference of two lists of the same length; a value that is NaN counts as an infinite difference.
-pub(crate) fn difference(actual: &[f64], expected: &[f64]) -> Difference {
+pub(crate) fn difference(actual: &[f64], expected: &[f64]) -> ErrorMeasure {
     assert_eq!(actual.len(), expected.len(), "lists of different lengths cannot be compared");
     assert!(!actual.is_empty(), "nothing to compare");
-    let mut found = Difference { max: 0.0, max_at: 0, rmse: 0.0 };
+    let mut found = ErrorMeasure { max: 0.0, max_at: 0, rmse: 0.0 };
     let mut squares = 0.0;
     for (at, (a, b)) in actual.iter().zip(expected).enumerate() {
         let d = (a - b).abs();
@@ -44,8 +44,8 @@ pub(crate) fn compare(
     what: &str,
     actual: &[f64],
     expected: &[f64],
-    limit: Limit,
-) -> Result<Difference, String> {
+    limit: ErrorLimit,
+) -> Result<ErrorMeasure, String> {
     let found = difference(actual, expected);
     println!("{what}: max {:.2e} at {}, rmse {:.2e}", found.max, found.max_at, found.rmse);
     if found.max <= limit.max && found.rmse <= limit.rmse {
@@ -59,22 +59,22 @@ pub(crate) fn compare(
 }
 
 /// Flattens f32 texels into a list of channels in f64.
-pub(crate) fn flat32(texels: &[[f32; 4]]) -> Vec<f64> {
+pub(crate) fn channels_f32(texels: &[[f32; 4]]) -> Vec<f64> {
     texels.iter().flatten().map(|&c| f64::from(c)).collect()
 }
 
 /// Flattens f64 texels into a list of channels.
-pub(crate) fn flat64(texels: &[[f64; 4]]) -> Vec<f64> {
+pub(crate) fn channels_f64(texels: &[[f64; 4]]) -> Vec<f64> {
     texels.iter().flatten().copied().collect()
 }
 
 /// Converts a list of f32 values to f64.
-pub(crate) fn wide(values: &[f32]) -> Vec<f64> {
+pub(crate) fn to_f64(values: &[f32]) -> Vec<f64> {
     values.iter().map(|&v| f64::from(v)).collect()
 }
 
 mod can_fail {
-    use super::{Limit, compare};
+    use super::{ErrorLimit, compare};
     use crate::thresholds::{LITERAL, SAME_WEIGHTS};
 
     /// Smooth list, and a copy with some values spoiled.
@@ -84,7 +84,7 @@ mod can_fail {
         (good, bad)
     }
 
-    fn fails(limit: Limit, spoil: impl Fn(usize, f64) -> f64) -> bool {
+    fn fails(limit: ErrorLimit, spoil: impl Fn(usize, f64) -> f64) -> bool {
         let (good, bad) = lists(spoil);
         compare("spoiled", &bad, &good, limit).is_err()
     }

@@ -2,8 +2,8 @@
 
 use chiaroscuro::data::{Samples, Volume};
 use chiaroscuro::model::{
-    Camera, ControlPoint, Interpolation, Length, Light, LightKind, NearField, Projection, ReverseKernel,
-    Settings, Shadows, Sides, TransferFunction,
+    Camera, ControlPoint, LightGeometry, LightSettings, LitSides, NearFieldRay, OpacityInterpolation,
+    OpacityLength, Projection, ReverseKernel, Settings, ShadowSettings, TransferFunction,
 };
 use glam::DVec3;
 
@@ -48,7 +48,7 @@ pub(crate) fn transfer() -> TransferFunction {
             point(170.0, [0.75, 0.75, 0.7], 0.5),
             point(250.0, [1.0, 0.9, 0.6], 0.8),
         ],
-        interpolation: Interpolation::Opacity,
+        interpolation: OpacityInterpolation::Opacity,
         ..TransferFunction::default()
     }
 }
@@ -56,7 +56,7 @@ pub(crate) fn transfer() -> TransferFunction {
 /// Look with one light and a rotated camera. Soft light has the requested resolution, however small the volume.
 pub(crate) fn look() -> Settings {
     Settings {
-        shadows: Shadows { least_blocks: 1, ..Shadows::default() },
+        shadows: ShadowSettings { least_blocks: 1, ..ShadowSettings::default() },
         camera: Camera {
             azimuth_deg: 37.0,
             elevation_deg: 24.0,
@@ -64,16 +64,16 @@ pub(crate) fn look() -> Settings {
             distance: 4.4,
             ..Camera::default()
         },
-        lights: vec![light(LightKind::Parallel, [1.3, -0.8, 1.7])],
+        lights: vec![light(LightGeometry::Parallel, [1.3, -0.8, 1.7])],
         transfer: transfer(),
-        opacity_unit: Length::Voxels(1.0),
+        opacity_unit: OpacityLength::Voxels(1.0),
         ..Settings::default()
     }
 }
 
 /// White light that casts shadows.
-pub(crate) fn light(kind: LightKind, position: [f64; 3]) -> Light {
-    Light { kind, position, ..Light::default() }
+pub(crate) fn light(kind: LightGeometry, position: [f64; 3]) -> LightSettings {
+    LightSettings { kind, position, ..LightSettings::default() }
 }
 
 /// Homogeneous block: `inside` returns true for the full voxels.
@@ -99,7 +99,7 @@ pub(crate) fn linear_extinction(per_voxel: f64) -> TransferFunction {
     let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     TransferFunction {
         points: vec![point(0.0, 0.0), point(255.0, 1.0 - (-per_voxel).exp())],
-        interpolation: Interpolation::Extinction,
+        interpolation: OpacityInterpolation::Extinction,
         ..TransferFunction::default()
     }
 }
@@ -115,7 +115,7 @@ pub(crate) fn noise(n: usize, seed: u64) -> Volume {
 }
 
 /// Orthographic camera that looks along an axis of the volume from outside.
-pub(crate) fn straight(azimuth_deg: f64, elevation_deg: f64) -> Camera {
+pub(crate) fn axis_camera(azimuth_deg: f64, elevation_deg: f64) -> Camera {
     Camera {
         projection: Projection::Orthographic,
         azimuth_deg,
@@ -127,7 +127,7 @@ pub(crate) fn straight(azimuth_deg: f64, elevation_deg: f64) -> Camera {
 
 /// Sets the camera of first looks in earlier versions, and the key light 40° from the line of sight, as much to the
 /// left as up.
-pub(crate) fn seen_as_earlier(settings: &mut Settings) {
+pub(crate) fn use_earlier_first_look(settings: &mut Settings) {
     (settings.camera.azimuth_deg, settings.camera.elevation_deg) = (-60.0, 28.0);
     let side = 40f64.to_radians().sin() / std::f64::consts::SQRT_2;
     let place = DVec3::new(-side, side, 40f64.to_radians().cos());
@@ -136,14 +136,14 @@ pub(crate) fn seen_as_earlier(settings: &mut Settings) {
 }
 
 /// Sets the shadows of the paper: the light volume alone, back-projected with the kernel of the light pass.
-pub(crate) fn paper(settings: &mut Settings) {
-    settings.shading.sides = Sides::Two;
+pub(crate) fn use_paper_shadows(settings: &mut Settings) {
+    settings.shading.sides = LitSides::Two;
     settings.shadows.reverse_kernel = ReverseKernel::Forward;
-    settings.shadows.near_field = NearField::Off;
+    settings.shadows.near_field = NearFieldRay::Off;
 }
 
 /// Sets a material that reflects light equally from all directions: no normals, no ambient light.
-pub(crate) fn isotropic(settings: &mut Settings) {
+pub(crate) fn make_isotropic(settings: &mut Settings) {
     settings.shading.ambient = 0.0;
     settings.shading.diffuse = 1.0;
     settings.shading.specular = 0.0;

@@ -1,16 +1,16 @@
 //! Tolerances of the rendering tests, each with its derivation. Pictures are compared in linear, premultiplied light
 //! before tone mapping; 1/255 is one step of an 8-bit display.
 
-use super::compare::Limit;
+use super::compare::ErrorLimit;
 use chiaroscuro::model::ShadowAlgorithm;
 
 /// GPU against reference with the same weights: the rest are f16 sheets and light volumes (2^−11 each), f32 positions
 /// and early ray termination at 1/4096.
-pub(crate) const SAME_WEIGHTS: Limit = Limit { max: 2.0 / 255.0, rmse: 0.25 / 255.0 };
+pub(crate) const SAME_WEIGHTS: ErrorLimit = ErrorLimit { max: 2.0 / 255.0, rmse: 0.25 / 255.0 };
 
 /// GPU against literal, un-normalised footprints: the quadrature over a slab and the normalisation differ by design;
 /// the largest single difference is at silhouettes and is not limited.
-pub(crate) const LITERAL: Limit = Limit { max: f64::INFINITY, rmse: 1.0 / 255.0 };
+pub(crate) const LITERAL: ErrorLimit = ErrorLimit { max: f64::INFINITY, rmse: 1.0 / 255.0 };
 
 /// Partition of unity with filtering hardware (8 fractional bits).
 pub(crate) const UNITY: f64 = 2e-3;
@@ -31,7 +31,7 @@ pub(crate) const EDGE_PROFILE: f64 = 4e-3;
 
 /// A signed wave against its negative: the ends of a 16-bit range are not symmetrical around its middle, and table
 /// entries lie beside the control points of either lobe, by 1/1023 of the range.
-pub(crate) const LOBES: Limit = Limit { max: 4.0 / 255.0, rmse: 0.5 / 255.0 };
+pub(crate) const LOBES: ErrorLimit = ErrorLimit { max: 4.0 / 255.0, rmse: 0.5 / 255.0 };
 
 /// Change of the picture's mean when slabs become four times thinner, relative.
 pub(crate) const SLAB_MEAN_CHANGE: f64 = 0.005;
@@ -93,10 +93,10 @@ pub(crate) const STRETCHED_FLICKER: f64 = 0.01;
 pub(crate) const STRETCHED_FOG: f64 = 0.005;
 
 /// Scattering against gathering with the same weights: f16 sheets and light volumes on both sides.
-pub(crate) const ENGINES: Limit = Limit { max: f64::INFINITY, rmse: 2.5e-4 };
+pub(crate) const ENGINES: ErrorLimit = ErrorLimit { max: f64::INFINITY, rmse: 2.5e-4 };
 
 /// A shell a tenth of a voxel thick, in slabs by need against even slabs of that thickness: their positions differ.
-pub(crate) const PEAK: Limit = Limit { max: f64::INFINITY, rmse: 2.0 / 255.0 };
+pub(crate) const PEAK: ErrorLimit = ErrorLimit { max: f64::INFINITY, rmse: 2.0 / 255.0 };
 /// Mean of the thin shell in slabs by need against even slabs, relative.
 pub(crate) const PEAK_MEAN: f64 = 0.03;
 
@@ -116,35 +116,35 @@ pub(crate) const ORDER_OPACITY: f64 = 4e-3;
 
 /// Light volumes of bytes against 16-bit floats: half a step of 1/255, whose mean square is 1/12 of a step's, and the
 /// floats' own half step.
-pub(crate) const BYTES: Limit = Limit { max: 0.55 / 255.0 + 5e-4, rmse: 0.32 / 255.0 };
+pub(crate) const BYTES: ErrorLimit = ErrorLimit { max: 0.55 / 255.0 + 5e-4, rmse: 0.32 / 255.0 };
 
 /// Combined lights against the sum of all, evenly lit: 16-bit colours, and remedies for darkness that are applied
 /// before the look-up instead of after it (the clipping at full light is not linear).
-pub(crate) const COMBINED: Limit = Limit { max: f64::INFINITY, rmse: 2e-3 };
+pub(crate) const COMBINED: ErrorLimit = ErrorLimit { max: f64::INFINITY, rmse: 2e-3 };
 
 /// Mean luminance of previews, exposed as at the beginning of a drag, against full pictures: above 1 % a swap is
 /// visible, and only previews with a quarter of the pixels and of the light's resolution exceed it, by 1.03 %.
 pub(crate) const PREVIEW_BRIGHTNESS: f64 = 0.011;
 /// Mean luminance of previews under light from the side, whose shadows are larger: 0.0258 with a sixteenth of the
 /// pixels, of which a chair fills few; 0.0168 with all of them, and a light volume at a quarter of the resolution.
-pub(crate) const PREVIEW_BRIGHTNESS_ASIDE: f64 = 0.027;
+pub(crate) const PREVIEW_BRIGHTNESS_SIDE_LIT: f64 = 0.027;
 
 /// Difference in the uncut share of the sum of opacities between other sheet orders and image-aligned ones: single
 /// footprints are cut at whole voxels, and of an edge of 32 voxels one is 3 %.
 pub(crate) const CUT_ORDERS: f64 = 0.03;
 
 /// Combined light at cut faces: it is stored once per voxel, and normals turn within one there.
-pub(crate) const CUT_COMBINED: Limit = Limit { max: f64::INFINITY, rmse: 3.0 / 255.0 };
+pub(crate) const CUT_COMBINED: ErrorLimit = ErrorLimit { max: f64::INFINITY, rmse: 3.0 / 255.0 };
 
 /// Light on the floor, absolute: a 16-bit float near 1, and the error of the midpoint rule along a ray.
 pub(crate) const FLOOR_SHADOW: f64 = 2e-3;
 
 /// A picture drawn in parts, or the mean of its samples, against the whole: an eighth of an 8-bit step. Ray origins
 /// are rounded to 32 bits, the floor's light to 16, and sRGB is 13 times as steep near black.
-pub(crate) const PARTS: f64 = 1.0 / 255.0 / 8.0;
+pub(crate) const TILES: f64 = 1.0 / 255.0 / 8.0;
 
 /// One sum in two orders of addition: eight steps of a 32-bit number near 1.
-pub(crate) const ADDED_OTHERWISE: Limit = Limit { max: 1e-6, rmse: 1e-7 };
+pub(crate) const SUMMATION_ORDER: ErrorLimit = ErrorLimit { max: 1e-6, rmse: 1e-7 };
 
 /// Half as many voxels along each axis against all of them, RMSE: edges are a voxel softer.
 pub(crate) const AVERAGED: f64 = 4.0 / 255.0;
@@ -156,7 +156,7 @@ pub(crate) const AVERAGED_MEAN: f64 = 0.02;
 pub(crate) const TONE_MAP: f64 = 1.0 / (1 << 18) as f64;
 
 /// Smallest light that is compared relatively: rays end at 1/4096 of it, and 16-bit floats get coarse.
-pub(crate) const FAINT: f64 = 1e-3;
+pub(crate) const MIN_COMPARED_LIGHT: f64 = 1e-3;
 
 /// Headlight identity by the literal deposit: factor by which halving the slab reduces the error, from 1 to ½ and
 /// from ½ to ¼. First order is 2; the thinner the slab, the more of the error is the kernel's own
@@ -165,7 +165,7 @@ pub(crate) const HEADLIGHT_ORDER: (f64, f64) = (1.6, 1.4);
 
 /// Distance from the rim of a spotlight beyond which the closed form holds, in degrees: two and a half voxels, the
 /// reverse kernel's radius and half a pixel, seen from the light.
-pub(crate) const HOOD_EDGE_DEG: f64 = 1.8;
+pub(crate) const SPOTLIGHT_RIM_DEG: f64 = 1.8;
 
 /// Balanced brightness against that without shadows, relative: the balance is measured in a small picture.
 pub(crate) const BALANCED: f64 = 0.02;
@@ -188,7 +188,7 @@ pub(crate) const EIGHT_BITS: f64 = 1.001 / 255.0;
 pub(crate) const HALF_STEP: f64 = 0.501 / 255.0;
 
 /// Smallest rounding error to 8 bits that must occur somewhere in a picture, if more bits carry more information.
-pub(crate) const HALF_STEP_SEEN: f64 = 0.4 / 255.0;
+pub(crate) const MIN_ROUNDING: f64 = 0.4 / 255.0;
 
 /// A dithered gradient, mean of eight rows, in steps of 8 bits: 64 thresholds are a 64th of a step apart, and eight
 /// rows of a gradient are not quite a whole number of patterns.
@@ -199,13 +199,13 @@ pub(crate) const SAMPLED_BACKGROUND: f64 = 5e-3;
 
 /// Previews of flat faces against slabs of a quarter of a voxel: 3.7e-3 close up and 2.0e-3 farther away; with slabs
 /// of two voxels it is 11e-3 and 4.7e-3. Single pixels at edges are not limited.
-pub(crate) const PREVIEW_STRIPES: Limit = Limit { max: f64::INFINITY, rmse: 4.2e-3 };
+pub(crate) const PREVIEW_STRIPES: ErrorLimit = ErrorLimit { max: f64::INFINITY, rmse: 4.2e-3 };
 
 /// Stripes along legs and posts of the chair in previews, over the mean there (root mean square): 0.020 with 64³
 /// voxels and 0.028 with 128³; with even slabs 0.134 and 0.088.
 pub(crate) const LEG_STRIPES: f64 = 0.045;
 /// Largest ratio of the stripes of pre-integrated slabs to those of even slabs: 0.15 and 0.32 were measured.
-pub(crate) const LEG_STRIPES_LEFT: f64 = 0.36;
+pub(crate) const LEG_STRIPES_RATIO: f64 = 0.36;
 
 /// Smallest brightening of a coarse preview without exposure correction, or the test would be meaningless.
 pub(crate) const PREVIEW_UNEXPOSED: f64 = 1.2;
@@ -220,18 +220,18 @@ pub(crate) const BYTE_STEP: f32 = 1e-3;
 
 /// A picture against that of the mirrored values under the mirrored curve: entries of the table lie at other
 /// positions among the values, and densities are rounded to 16 bits.
-pub(crate) const MIRRORED: Limit = Limit { max: 4.0 / 255.0, rmse: 0.25 / 255.0 };
+pub(crate) const MIRRORED: ErrorLimit = ErrorLimit { max: 4.0 / 255.0, rmse: 0.25 / 255.0 };
 
 /// One head in files with other axis orders and directions: a step of an 8-bit picture. The remaining difference is
 /// that passes add the same numbers in another order.
-pub(crate) const SAME_HEAD: Limit = Limit { max: 1.0 / 255.0, rmse: 0.1 / 255.0 };
+pub(crate) const PHANTOM: ErrorLimit = ErrorLimit { max: 1.0 / 255.0, rmse: 0.1 / 255.0 };
 
 /// Light just below a lit face with near-field rays, RMSE: steps of ½ to 1½ voxels through densities that are
 /// prefiltered at voxels and interpolated between them; where τ is about 1, a tenth of a voxel is 0.02.
 pub(crate) const NEAR_A_FACE: f64 = 0.015;
 /// Smallest RMSE just below a lit face of a light volume alone, which is blurred three times: more than twice as
 /// much.
-pub(crate) const LOOKED_UP_BELOW_A_FACE: f64 = 0.03;
+pub(crate) const LIGHT_VOLUME_NEAR_A_FACE: f64 = 0.03;
 
 /// Means of *Exact* pictures against those of a path tracer, whose own uncertainty is 0.22 %: rays in thin slabs have
 /// no other error.
@@ -248,20 +248,20 @@ pub(crate) const EXACT_OF_LIMIT: f64 = 0.3;
 
 /// A floor under a sky: its map has a texel per 0.03 scene units, where light of one direction is absorbed within two
 /// voxels.
-pub(crate) const FLOOR_UNDER_A_SKY: Limit = Limit { max: 0.01, rmse: 5e-4 };
+pub(crate) const FLOOR_UNDER_A_SKY: ErrorLimit = ErrorLimit { max: 0.01, rmse: 5e-4 };
 
 /// Sky visibility from 64 directions at full resolution, absolute: the error of that many directions and blocks of a
 /// voxel against integrals over all directions.
-pub(crate) const OPENNESS: f64 = 0.01;
+pub(crate) const SKY_VISIBILITY: f64 = 0.01;
 /// Sky visibility beside a wall, whose edge the directions cross one by one: each is 1/64 of the sky.
-pub(crate) const OPENNESS_BESIDE_A_WALL: f64 = 0.03;
+pub(crate) const SKY_VISIBILITY_AT_WALL: f64 = 0.03;
 /// Moments of sky visibility on the GPU against those of the reference: sums over directions with 11 bits, stored
 /// with as many.
-pub(crate) const SAME_OPENNESS: Limit = Limit { max: 2e-3, rmse: 3e-4 };
+pub(crate) const SKY_MOMENTS: ErrorLimit = ErrorLimit { max: 2e-3, rmse: 3e-4 };
 
 /// Multiply scattered light on the GPU against that of the reference, with lights of about 1: numbers with 11 bits at
 /// every bounce, of which the last is extrapolated from the two before.
-pub(crate) const SAME_BOUNCED: Limit = Limit { max: 1.5e-3, rmse: 2e-4 };
+pub(crate) const SCATTERED_LIGHT: ErrorLimit = ErrorLimit { max: 1.5e-3, rmse: 2e-4 };
 /// All light within material against random walks, root mean square of the difference over the mean: the error of
 /// blocks of a voxel and 64 directions, and of the walks, whose number gives 1 %.
 pub(crate) const LIGHT_BY_WALKS: f64 = 0.02;
@@ -295,4 +295,4 @@ pub(crate) const TERMINATOR: f64 = 0.15;
 
 /// Light of area lights on the floor, on a map whose texels are half a voxel wide here, from sheets whose pixels are
 /// a voxel wide: rays find edges a little sharper.
-pub(crate) const FLOOR_PENUMBRA: Limit = Limit { max: 0.02, rmse: 1.6e-3 };
+pub(crate) const FLOOR_PENUMBRA: ErrorLimit = ErrorLimit { max: 0.02, rmse: 1.6e-3 };

@@ -14,7 +14,7 @@ pub(crate) fn entry_shaders() -> Vec<&'static str> {
 }
 
 /// Source of a shader with its imports.
-pub(crate) fn joined(name: &str) -> String {
+pub(crate) fn shader_source(name: &str) -> String {
     ShaderLibrary::source(name, TextureFormat::R16Float, TextureFormat::R16Float)
         .expect("the shader and its imports are there")
 }
@@ -26,7 +26,7 @@ pub(crate) fn variants(
     attenuation: TextureFormat,
 ) -> Vec<(String, String)> {
     let source = |what: String, value: &dyn Fn(&str) -> f64| {
-        let source = ShaderLibrary::source_where(name, storage, attenuation, value);
+        let source = ShaderLibrary::preprocessed_source(name, storage, attenuation, value);
         (what, source.expect("the shader, its imports and its conditions are there"))
     };
     let mut all = vec![source("all".to_owned(), &|_| 9.0), source("none".to_owned(), &|_| 0.0)];
@@ -39,7 +39,7 @@ pub(crate) fn variants(
 }
 
 /// Parses and validates a shader; no capability beyond the core is allowed.
-pub(crate) fn check(source: &str) -> Result<naga::Module, String> {
+pub(crate) fn validate_shader(source: &str) -> Result<naga::Module, String> {
     let module = naga::front::wgsl::parse_str(source).map_err(|err| err.emit_to_string(source))?;
     Validator::new(ValidationFlags::all(), Capabilities::empty())
         .validate(&module)
@@ -48,7 +48,7 @@ pub(crate) fn check(source: &str) -> Result<naga::Module, String> {
 }
 
 /// Source text without line comments.
-pub(crate) fn code_of(text: &str) -> String {
+pub(crate) fn without_comments(text: &str) -> String {
     text.lines().map(|line| line.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join("\n")
 }
 

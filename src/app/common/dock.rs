@@ -7,26 +7,26 @@ use eframe::egui::{
     vec2,
 };
 
-use super::frame;
+use super::overlay_windows;
 use super::theme;
 use crate::app::text;
 
 /// Default width of the dock, in points, until the user drags its border.
 const WIDTH: f32 = 470.0;
 /// Minimum width of the dock, in points, at which the narrowest tool is not cut.
-const NARROWEST: f32 = 240.0;
+const MIN_WIDTH: f32 = 240.0;
 /// Width of the picture beside the widest dock, in points.
-const PICTURE: f32 = 240.0;
+const MIN_PICTURE_BESIDE_WIDEST: f32 = 240.0;
 /// Minimum width of the picture beside the narrowest dock, in points; below it, tools float over the picture.
-const LEAST_PICTURE: f32 = 160.0;
+const MIN_PICTURE: f32 = 160.0;
 /// Height of a docked tool's header, in points.
 const HEADER: f32 = 26.0;
 /// Width of the toolkit's close button at the right end of a title bar, in points.
-const CLOSE: f32 = 30.0;
+const CLOSE_BUTTON_WIDTH: f32 = 30.0;
 
 /// State of the dock: the titles of the docked tools, and their layout.
 #[derive(Debug, Clone, Default)]
-struct Dock {
+struct DockState {
     docked: BTreeSet<String>,
     /// Docked tools shown in the previous frame, in order from the top.
     before: Vec<&'static str>,
@@ -41,24 +41,24 @@ struct Dock {
     room: f32,
 }
 
-fn change<R>(ctx: &egui::Context, change: impl FnOnce(&mut Dock) -> R) -> R {
+fn change<R>(ctx: &egui::Context, change: impl FnOnce(&mut DockState) -> R) -> R {
     ctx.data_mut(|data| change(data.get_temp_mut_or_default(Id::unique("dock"))))
 }
 
 /// Returns the titles of the docked tools.
-pub(in crate::app) fn docked(ctx: &egui::Context) -> BTreeSet<String> {
+pub(crate) fn docked_titles(ctx: &egui::Context) -> BTreeSet<String> {
     change(ctx, |dock| dock.docked.clone())
 }
 
 /// Docks the tools that were docked in an earlier run.
-pub(in crate::app) fn set_docked(ctx: &egui::Context, titles: &BTreeSet<String>) {
+pub(crate) fn set_docked(ctx: &egui::Context, titles: &BTreeSet<String>) {
     change(ctx, |dock| dock.docked.clone_from(titles));
 }
 
 /// Reserves space beside the picture, if a docked tool is open.
-pub(in crate::app) fn reserve(ui: &mut Ui) {
-    let room = ui.available_width() - PICTURE;
-    let is_too_narrow = ui.available_width() < NARROWEST + LEAST_PICTURE;
+pub(crate) fn reserve_space(ui: &mut Ui) {
+    let room = ui.available_width() - MIN_PICTURE_BESIDE_WIDEST;
+    let is_too_narrow = ui.available_width() < MIN_WIDTH + MIN_PICTURE;
     let is_needed = change(ui.ctx(), |dock| {
         dock.before = std::mem::take(&mut dock.now);
         if is_too_narrow {
@@ -70,15 +70,15 @@ pub(in crate::app) fn reserve(ui: &mut Ui) {
     if !is_needed {
         return;
     }
-    let most = room.max(NARROWEST);
+    let most = room.max(MIN_WIDTH);
     let panel = Panel::left("dock").resizable(true).default_size(WIDTH.min(most));
-    let panel = panel.size_range(NARROWEST..=most).frame(theme::panel(ui));
+    let panel = panel.size_range(MIN_WIDTH..=most).frame(theme::panel(ui));
     let area = panel.show(ui, |ui| ui.allocate_rect(ui.available_rect_before_wrap(), Sense::hover()).rect);
     change(ui.ctx(), |dock| dock.area = Some(area.inner));
 }
 
 /// Hides the dock with its tools, while only the picture is shown.
-pub(in crate::app) fn hide(ctx: &egui::Context) {
+pub(crate) fn hide(ctx: &egui::Context) {
     change(ctx, |dock| {
         dock.now.clear();
         (dock.area, dock.is_hidden) = (None, true);
@@ -87,7 +87,7 @@ pub(in crate::app) fn hide(ctx: &egui::Context) {
 
 /// Tool window, identified by its title.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::app) struct Tool {
+pub(crate) struct ToolWindow {
     /// Title of the tool, which also identifies it.
     pub title: &'static str,
     /// Initial position of the floating window, in points.
@@ -96,14 +96,14 @@ pub(in crate::app) struct Tool {
     pub default_width: f32,
 }
 
-impl Tool {
+impl ToolWindow {
     /// Shows the tool while it is open.
-    pub(in crate::app) fn show(self, ctx: &egui::Context, open: &mut bool, add: impl FnOnce(&mut Ui)) {
+    pub(crate) fn show(self, ctx: &egui::Context, open: &mut bool, add: impl FnOnce(&mut Ui)) {
         self.show_as(ctx, open, false, add);
     }
 
     /// Shows a dialog while it is open: Escape closes it wherever the pointer is.
-    pub(in crate::app) fn show_dialog(self, ctx: &egui::Context, open: &mut bool, add: impl FnOnce(&mut Ui)) {
+    pub(crate) fn show_dialog(self, ctx: &egui::Context, open: &mut bool, add: impl FnOnce(&mut Ui)) {
         self.show_as(ctx, open, true, add);
     }
 
@@ -114,39 +114,44 @@ impl Tool {
         if self.is_docked(ctx, is_dialog) {
             self.show_docked(ctx, open, is_dialog, add);
         } else {
-            self.show_floating(ctx, open, self.has_room(ctx, is_dialog), add);
+            self.show_floating(ctx, open, self.can_dock(ctx, is_dialog), add);
         }
     }
 
     /// Returns true if a dialog floats over the picture, by choice or for lack of space.
-    pub(in crate::app) fn is_floating_dialog(&self, ctx: &egui::Context) -> bool {
+    pub(crate) fn is_floating_dialog(&self, ctx: &egui::Context) -> bool {
         !self.is_docked(ctx, true)
     }
 
     fn is_docked(&self, ctx: &egui::Context, is_dialog: bool) -> bool {
-        self.has_room(ctx, is_dialog) && change(ctx, |dock| dock.docked.contains(self.title))
+        self.can_dock(ctx, is_dialog) && change(ctx, |dock| dock.docked.contains(self.title))
     }
 
     /// Returns true if the tool can be docked. A dialog needs its full width: cut rows would hide its buttons.
-    fn has_room(&self, ctx: &egui::Context, is_dialog: bool) -> bool {
+    fn can_dock(&self, ctx: &egui::Context, is_dialog: bool) -> bool {
         change(ctx, |dock| !dock.is_too_narrow && (!is_dialog || dock.room >= self.default_width))
     }
 
     fn show_floating(self, ctx: &egui::Context, open: &mut bool, can_dock: bool, add: impl FnOnce(&mut Ui)) {
         let window = egui::Window::new(self.title).open(open).collapsible(false).resizable(true);
-        let window = window.constrain_to(frame::room(ctx)).default_pos(self.default_pos);
+        let window = window.constrain_to(overlay_windows::window_area(ctx)).default_pos(self.default_pos);
         let shown = window.default_width(self.default_width).show(ctx, add);
         let Some(shown) = shown else { return };
-        *open &= !frame::is_left(ctx, Some(&shown.response));
+        *open &= !overlay_windows::escape_closes(ctx, Some(&shown.response));
         if !can_dock {
             return;
         }
         // Beside the close button of the window.
         let whole = shown.response.rect;
-        let middle = pos2(whole.right() - CLOSE - 12.0, whole.top() + 0.5 * HEADER + 2.0);
+        let middle = pos2(whole.right() - CLOSE_BUTTON_WIDTH - 12.0, whole.top() + 0.5 * HEADER + 2.0);
         let builder = UiBuilder::new().layer_id(shown.response.layer_id).max_rect(whole);
         let ui = Ui::new(ctx.clone(), Id::unique((self.title, "title")), builder);
-        if sign(&ui, Rect::from_center_size(middle, vec2(20.0, 18.0)), &text::dock::dock(self.title), true) {
+        if dock_button(
+            &ui,
+            Rect::from_center_size(middle, vec2(20.0, 18.0)),
+            &text::dock::dock_name(self.title),
+            true,
+        ) {
             change(ctx, |dock| dock.docked.insert(self.title.to_owned()));
             ctx.request_repaint();
         }
@@ -173,7 +178,7 @@ impl Tool {
         let mut ui = Ui::new(ctx.clone(), Id::unique((self.title, "docked")), builder);
         ui.set_clip_rect(place);
         // It lies below all windows; Escape closes the tool under the pointer.
-        if (is_dialog || ui.rect_contains_pointer(place)) && frame::is_for_picture(ctx) {
+        if (is_dialog || ui.rect_contains_pointer(place)) && overlay_windows::escape_for_picture(ctx) {
             *open = false;
         }
         ui.horizontal(|ui| {
@@ -184,7 +189,7 @@ impl Tool {
                     *open = false;
                 }
                 let (rect, _) = ui.allocate_exact_size(vec2(20.0, 18.0), Sense::hover());
-                if sign(ui, rect, &text::dock::float(self.title), false) {
+                if dock_button(ui, rect, &text::dock::undock_name(self.title), false) {
                     change(ctx, |dock| dock.docked.remove(self.title));
                     ctx.request_repaint();
                 }
@@ -198,7 +203,7 @@ impl Tool {
 
 /// Shows the icon of a window whose left part is filled (`docks`) or empty, as a button; returns true if it was
 /// clicked.
-fn sign(ui: &Ui, area: Rect, name: &str, docks: bool) -> bool {
+fn dock_button(ui: &Ui, area: Rect, name: &str, docks: bool) -> bool {
     let response = ui.interact(area, ui.scope_id().with(("dock", docks)), Sense::click());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
     let lit = response.hovered() || response.has_focus();

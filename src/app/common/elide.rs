@@ -8,7 +8,7 @@ use eframe::egui::{Color32, FontId, TextStyle, Ui};
 const ELLIPSIS: char = '…';
 
 /// Returns the width of a text in one line, in points.
-pub(in crate::app) fn text_width(ui: &Ui, words: &str, style: &TextStyle) -> f32 {
+pub(crate) fn text_width(ui: &Ui, words: &str, style: &TextStyle) -> f32 {
     width_of(ui, words, style.resolve(ui.style()))
 }
 
@@ -17,13 +17,13 @@ fn width_of(ui: &Ui, words: &str, font: FontId) -> f32 {
 }
 
 /// Shortens a name to a width, by omitting as few characters of its middle as possible.
-pub(in crate::app) fn elide_middle(ui: &Ui, name: &str, style: &TextStyle, width: f32) -> String {
+pub(crate) fn elide_middle(ui: &Ui, name: &str, style: &TextStyle, width: f32) -> String {
     let font = style.resolve(ui.style());
-    elide_by(name, |words| width_of(ui, words, font.clone()) <= width)
+    elide_to_fit(name, |words| width_of(ui, words, font.clone()) <= width)
 }
 
 /// Finds the longest form that fits: the whole name, or the name without a part of its middle.
-fn elide_by(name: &str, fits: impl Fn(&str) -> bool) -> String {
+fn elide_to_fit(name: &str, fits: impl Fn(&str) -> bool) -> String {
     if fits(name) {
         return name.to_owned();
     }
@@ -52,7 +52,7 @@ mod tests {
 
     #[test]
     fn names_keep_their_beginnings_and_endings() {
-        let elided = |name: &str, most: usize| elide_by(name, |words| words.chars().count() <= most);
+        let elided = |name: &str, most: usize| elide_to_fit(name, |words| words.chars().count() <= most);
         assert_eq!(elided("tooth.nrrd", 10), "tooth.nrrd");
         assert_eq!(elided("subject_042_run_3_T1w.nii.gz", 15), "subject….nii.gz");
         assert_eq!(elided("subject_042_run_3_T1w.nii.gz", 14), "subject…nii.gz");

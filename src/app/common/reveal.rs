@@ -8,7 +8,7 @@ use super::theme;
 
 /// Location of a setting in the panels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Place {
+pub(crate) struct SettingPlace {
     /// Title of the setting's section.
     pub section: &'static str,
     /// Name of the setting's row; `None` for the section as a whole.
@@ -23,12 +23,12 @@ const GLOW_S: f64 = 2.0;
 /// moves there.
 const PASSES_AT_REST: u8 = 3;
 /// Movement between passes from which scrolling has not finished, in points.
-const MOVED: f32 = 0.5;
+const MOVEMENT_TOLERANCE: f32 = 0.5;
 
 /// Place that is being revealed, with its progress.
 #[derive(Debug, Clone, Copy)]
-struct Shown {
-    place: Place,
+struct RevealState {
+    place: SettingPlace,
     since_s: f64,
     /// Passes in which the section and its advanced part were told to open.
     opened: [Option<u64>; 2],
@@ -36,13 +36,13 @@ struct Shown {
     unfolded: Option<u64>,
     /// Last pass in which the row was shown.
     seen: Option<u64>,
-    way: Way,
+    way: ScrollProgress,
 }
 
 /// Progress of scrolling to a place. It is counted in passes, not in time: where frames are slow, few of them fit
 /// into the seconds in which a fast window arrives.
 #[derive(Debug, Clone, Copy, Default)]
-struct Way {
+struct ScrollProgress {
     /// Upper edge of the place in the previous pass, in points of the window.
     top: f32,
     /// Number of passes since without movement.
@@ -50,7 +50,7 @@ struct Way {
     has_begun: bool,
 }
 
-impl Way {
+impl ScrollProgress {
     const END: Self = Self { top: 0.0, at_rest: PASSES_AT_REST, has_begun: true };
 
     fn is_over(self) -> bool {
@@ -59,7 +59,7 @@ impl Way {
 
     /// Continues scrolling to an area. `may_rest`: the layout around it is not animated. Scrolling by the user's
     /// wheel ends it.
-    fn follow(self, ui: &Ui, area: Rect, align: Align, may_rest: bool) -> Self {
+    fn advance(self, ui: &Ui, area: Rect, align: Align, may_rest: bool) -> Self {
         let is_wheel = |event: &egui::Event| matches!(event, egui::Event::MouseWheel { .. });
         let is_left = self.has_begun && ui.input(|input| input.events.iter().any(is_wheel));
         if self.is_over() || is_left {
@@ -67,7 +67,7 @@ impl Way {
         }
         ui.scroll_to_rect(area, Some(align));
         ui.ctx().request_repaint();
-        let rests = self.has_begun && may_rest && (area.top() - self.top).abs() < MOVED;
+        let rests = self.has_begun && may_rest && (area.top() - self.top).abs() < MOVEMENT_TOLERANCE;
         Self { top: area.top(), at_rest: if rests { self.at_rest + 1 } else { 0 }, has_begun: true }
     }
 }
@@ -81,21 +81,22 @@ fn now_s(ctx: &egui::Context) -> f64 {
 }
 
 /// Starts to reveal a place.
-pub(crate) fn reveal(ctx: &egui::Context, place: Place) {
-    let way = Way::default();
-    let shown = Shown { place, since_s: now_s(ctx), opened: [None; 2], unfolded: None, seen: None, way };
+pub(crate) fn reveal(ctx: &egui::Context, place: SettingPlace) {
+    let way = ScrollProgress::default();
+    let shown =
+        RevealState { place, since_s: now_s(ctx), opened: [None; 2], unfolded: None, seen: None, way };
     ctx.data_mut(|data| data.insert_temp(id(), shown));
     ctx.request_repaint();
 }
 
-fn shown(ctx: &egui::Context) -> Option<Shown> {
-    let shown: Shown = ctx.data(|data| data.get_temp(id()))?;
+fn shown(ctx: &egui::Context) -> Option<RevealState> {
+    let shown: RevealState = ctx.data(|data| data.get_temp(id()))?;
     (now_s(ctx) - shown.since_s < GLOW_S || !shown.way.is_over()).then_some(shown)
 }
 
 /// Returns true if a section, or an advanced part of it, is to open now. It does so during one pass: a section can
 /// have several advanced parts, and any of them may hold the row.
-pub(in crate::app) fn opens(ctx: &egui::Context, section: &str, is_advanced: bool) -> bool {
+pub(crate) fn should_open(ctx: &egui::Context, section: &str, is_advanced: bool) -> bool {
     let Some(mut shown) = shown(ctx).filter(|shown| shown.place.section == section) else { return false };
     if is_advanced && !shown.place.is_advanced {
         return false;
@@ -112,23 +113,23 @@ pub(in crate::app) fn opens(ctx: &egui::Context, section: &str, is_advanced: boo
 /// Scrolls to the title of a section, if the section as a whole is revealed, or if the row is not there because it
 /// belongs to a feature that is off. `is_open`: the section has its full height. Returns true while it is being
 /// scrolled to.
-pub(in crate::app) fn lead_to_section(ui: &Ui, section: &str, title: Rect, is_open: bool) -> bool {
+pub(crate) fn scroll_to_section(ui: &Ui, section: &str, title: Rect, is_open: bool) -> bool {
     let ctx = ui.ctx();
-    report(ctx, title, || section.to_owned());
+    report_area(ctx, title, || section.to_owned());
     let Some(mut shown) = shown(ctx).filter(|shown| shown.place.section == section) else { return false };
     let is_row_there = shown.seen == Some(ctx.cumulative_pass_nr());
     if is_row_there || shown.way.is_over() {
         return false;
     }
-    shown.way = shown.way.follow(ui, title, Align::TOP, is_open);
+    shown.way = shown.way.advance(ui, title, Align::TOP, is_open);
     ctx.data_mut(|data| data.insert_temp(id(), shown));
     true
 }
 
 /// Scrolls to a row and lets it glow, while it is being revealed.
-pub(in crate::app) fn glow(ui: &Ui, section: &str, row: &str, area: Rect) {
+pub(crate) fn highlight_row(ui: &Ui, section: &str, row: &str, area: Rect) {
     let ctx = ui.ctx();
-    report(ctx, area, || format!("{section}/{row}"));
+    report_area(ctx, area, || format!("{section}/{row}"));
     let Some(mut shown) = shown(ctx) else { return };
     if shown.place.section != section || shown.place.row != Some(row) {
         return;
@@ -139,7 +140,7 @@ pub(in crate::app) fn glow(ui: &Ui, section: &str, row: &str, area: Rect) {
         return;
     }
     shown.seen = pass;
-    shown.way = shown.way.follow(ui, area, Align::Center, true);
+    shown.way = shown.way.advance(ui, area, Align::Center, true);
     ctx.data_mut(|data| data.insert_temp(id(), shown));
     let age = now_s(ctx) - shown.since_s;
     let strength = (1.0 - age / GLOW_S).max(0.0) as f32;
@@ -150,14 +151,14 @@ pub(in crate::app) fn glow(ui: &Ui, section: &str, row: &str, area: Rect) {
 /// Reveals a section if its feature was switched on.
 pub(crate) fn show_section(ctx: &egui::Context, section: &'static str, is_on: bool) {
     if is_on {
-        reveal(ctx, Place { section, row: None, is_advanced: false });
+        reveal(ctx, SettingPlace { section, row: None, is_advanced: false });
     }
 }
 
 /// Areas of the panel's parts in one pass, in points of the window: by section, by section and row (`Data/Spacing`),
 /// and by the names of buttons.
 #[derive(Debug, Clone, Default)]
-struct Reported {
+struct ReportedAreas {
     pass: u64,
     areas: BTreeMap<String, Rect>,
 }
@@ -167,13 +168,13 @@ fn reported_id() -> Id {
 }
 
 /// Records the area of a part of the panel, for the status file.
-pub(in crate::app) fn report(ctx: &egui::Context, area: Rect, name: impl FnOnce() -> String) {
+pub(crate) fn report_area(ctx: &egui::Context, area: Rect, name: impl FnOnce() -> String) {
     let pass = ctx.cumulative_pass_nr();
     ctx.data_mut(|data| {
         // Absent unless the status file is in use.
-        let Some(mut reported) = data.get_temp::<Reported>(reported_id()) else { return };
+        let Some(mut reported) = data.get_temp::<ReportedAreas>(reported_id()) else { return };
         if reported.pass != pass {
-            reported = Reported { pass, ..Reported::default() };
+            reported = ReportedAreas { pass, ..ReportedAreas::default() };
         }
         reported.areas.insert(name(), area);
         data.insert_temp(reported_id(), reported);
@@ -181,9 +182,9 @@ pub(in crate::app) fn report(ctx: &egui::Context, area: Rect, name: impl FnOnce(
 }
 
 /// Returns the areas recorded in this pass; the first call returns none and starts the recording.
-pub(crate) fn reported(ctx: &egui::Context) -> BTreeMap<String, Rect> {
-    let reported: Reported =
-        ctx.data_mut(|data| data.get_temp_mut_or_default::<Reported>(reported_id()).clone());
+pub(crate) fn reported_areas(ctx: &egui::Context) -> BTreeMap<String, Rect> {
+    let reported: ReportedAreas =
+        ctx.data_mut(|data| data.get_temp_mut_or_default::<ReportedAreas>(reported_id()).clone());
     reported.areas
 }
 
@@ -197,7 +198,7 @@ mod tests {
     /// Reveals a row in an advanced part, and runs two passes.
     fn run(mut pass: impl FnMut(&mut Ui)) {
         let ctx = egui::Context::default();
-        reveal(&ctx, Place { section: SECTION, row: Some(ROW), is_advanced: true });
+        reveal(&ctx, SettingPlace { section: SECTION, row: Some(ROW), is_advanced: true });
         for _ in 0..2 {
             let mut output = ctx.run_ui(egui::RawInput::default(), &mut pass);
             output.textures_delta.clear();
@@ -208,8 +209,8 @@ mod tests {
     fn all_that_is_folded_away_in_a_section_opens_once() {
         let mut opened = Vec::new();
         run(|ui| {
-            assert!(!opens(ui.ctx(), "Lights", false), "another section stays as it is");
-            opened.push([false, true, true].map(|is_advanced| opens(ui.ctx(), SECTION, is_advanced)));
+            assert!(!should_open(ui.ctx(), "Lights", false), "another section stays as it is");
+            opened.push([false, true, true].map(|is_advanced| should_open(ui.ctx(), SECTION, is_advanced)));
         });
         assert_eq!(opened, [[true; 3], [false; 3]]);
     }
@@ -217,11 +218,11 @@ mod tests {
     #[test]
     fn a_row_that_is_folded_away_is_told_from_one_of_its_name_above() {
         run(|ui| {
-            glow(ui, SECTION, ROW, Rect::ZERO);
-            let is_led_to = |ui: &Ui| lead_to_section(ui, SECTION, Rect::ZERO, true);
+            highlight_row(ui, SECTION, ROW, Rect::ZERO);
+            let is_led_to = |ui: &Ui| scroll_to_section(ui, SECTION, Rect::ZERO, true);
             assert!(is_led_to(ui), "the section is, as long as its row is not there");
-            opens(ui.ctx(), SECTION, true);
-            glow(ui, SECTION, ROW, Rect::ZERO);
+            should_open(ui.ctx(), SECTION, true);
+            highlight_row(ui, SECTION, ROW, Rect::ZERO);
             assert!(!is_led_to(ui));
         });
     }

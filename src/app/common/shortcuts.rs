@@ -3,75 +3,75 @@
 use eframe::egui::gui_zoom::kb_shortcuts;
 use eframe::egui::{self, Event, Key, KeyboardShortcut, Modifiers};
 
-use super::commands::Command;
+use super::commands::AppCommand;
 use crate::app::text;
-use crate::model::{ObjectTurn, StandardView};
+use crate::model::{ObjectRotation, StandardView};
 
-const fn plain(key: Key, command: Command) -> (KeyboardShortcut, Command) {
+const fn plain(key: Key, command: AppCommand) -> (KeyboardShortcut, AppCommand) {
     (KeyboardShortcut::new(Modifiers::NONE, key), command)
 }
 
-const fn control(key: Key, command: Command) -> (KeyboardShortcut, Command) {
+const fn control(key: Key, command: AppCommand) -> (KeyboardShortcut, AppCommand) {
     (KeyboardShortcut::new(Modifiers::COMMAND, key), command)
 }
 
 /// Shortcuts with their commands, in the order in which help shows them.
-pub(crate) const SHORTCUTS: [(KeyboardShortcut, Command); 48] = [
+pub(crate) const SHORTCUTS: [(KeyboardShortcut, AppCommand); 48] = [
     // Shortcuts with Shift come first: egui lets Shift pass where it is not required.
-    (KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::O), Command::OpenFolder),
-    control(Key::O, Command::OpenDialog),
-    control(Key::L, Command::OpenPath),
-    plain(Key::PageDown, Command::NextFile),
-    plain(Key::PageUp, Command::PreviousFile),
-    control(Key::S, Command::SaveSettings),
-    control(Key::E, Command::Export),
-    (KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::C), Command::CopyPicture),
-    control(Key::P, Command::ShowPalette),
-    control(Key::Q, Command::Quit),
-    (KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z), Command::Redo),
-    control(Key::Z, Command::Undo),
-    plain(Key::R, Command::ResetView),
-    plain(Key::F, Command::FrameAll),
-    plain(Key::Num1, Command::LookFrom(StandardView::MinusY)),
-    plain(Key::Num2, Command::LookFrom(StandardView::PlusY)),
-    plain(Key::Num3, Command::LookFrom(StandardView::PlusX)),
-    plain(Key::Num4, Command::LookFrom(StandardView::MinusX)),
-    plain(Key::Num7, Command::LookFrom(StandardView::PlusZ)),
-    plain(Key::Num8, Command::LookFrom(StandardView::MinusZ)),
-    plain(Key::Num9, Command::LookFrom(StandardView::Isometric)),
-    plain(Key::Num5, Command::ToggleProjection),
-    (KeyboardShortcut::new(Modifiers::SHIFT, Key::T), Command::TurnRound),
-    plain(Key::T, Command::TurnObject(ObjectTurn::Over)),
-    plain(Key::F11, Command::ToggleFullScreen),
-    plain(Key::Comma, Command::PreviousLight),
-    plain(Key::Period, Command::NextLight),
-    plain(Key::OpenBracket, Command::Dimmer),
-    plain(Key::CloseBracket, Command::Brighter),
-    plain(Key::S, Command::Solo),
-    plain(Key::M, Command::Mute),
-    plain(Key::B, Command::Balance),
-    (KeyboardShortcut::new(Modifiers::SHIFT, Key::X), Command::FacePlane),
-    plain(Key::X, Command::TogglePlane),
-    plain(Key::K, Command::ToggleCrop),
-    plain(Key::I, Command::ToggleProbe),
-    (KeyboardShortcut::new(Modifiers::SHIFT, Key::G), Command::ToggleFloor),
-    plain(Key::G, Command::ToggleOverlay),
-    plain(Key::H, Command::ToggleHandles),
-    plain(Key::C, Command::ToggleCompare),
-    plain(Key::D, Command::ShowSlices),
-    (KeyboardShortcut::new(Modifiers::SHIFT, Key::V), Command::ToggleKept),
-    plain(Key::V, Command::TryLooks),
-    (KeyboardShortcut::new(Modifiers::SHIFT, Key::N), Command::ToggleTransfer),
-    plain(Key::N, Command::ToggleSide),
-    control(Key::Backslash, Command::TogglePictureOnly),
-    plain(Key::Questionmark, Command::ShowHelp),
-    plain(Key::F1, Command::ShowHelp),
+    (KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::O), AppCommand::OpenFolder),
+    control(Key::O, AppCommand::OpenDialog),
+    control(Key::L, AppCommand::OpenPath),
+    plain(Key::PageDown, AppCommand::NextFile),
+    plain(Key::PageUp, AppCommand::PreviousFile),
+    control(Key::S, AppCommand::SaveSettings),
+    control(Key::E, AppCommand::Export),
+    (KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::C), AppCommand::CopyPicture),
+    control(Key::P, AppCommand::ShowPalette),
+    control(Key::Q, AppCommand::Quit),
+    (KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z), AppCommand::Redo),
+    control(Key::Z, AppCommand::Undo),
+    plain(Key::R, AppCommand::ResetView),
+    plain(Key::F, AppCommand::FrameAll),
+    plain(Key::Num1, AppCommand::LookFrom(StandardView::MinusY)),
+    plain(Key::Num2, AppCommand::LookFrom(StandardView::PlusY)),
+    plain(Key::Num3, AppCommand::LookFrom(StandardView::PlusX)),
+    plain(Key::Num4, AppCommand::LookFrom(StandardView::MinusX)),
+    plain(Key::Num7, AppCommand::LookFrom(StandardView::PlusZ)),
+    plain(Key::Num8, AppCommand::LookFrom(StandardView::MinusZ)),
+    plain(Key::Num9, AppCommand::LookFrom(StandardView::Isometric)),
+    plain(Key::Num5, AppCommand::ToggleProjection),
+    (KeyboardShortcut::new(Modifiers::SHIFT, Key::T), AppCommand::RotateObject),
+    plain(Key::T, AppCommand::TurnObject(ObjectRotation::TipBack)),
+    plain(Key::F11, AppCommand::ToggleFullScreen),
+    plain(Key::Comma, AppCommand::PreviousLight),
+    plain(Key::Period, AppCommand::NextLight),
+    plain(Key::OpenBracket, AppCommand::Dimmer),
+    plain(Key::CloseBracket, AppCommand::Brighter),
+    plain(Key::S, AppCommand::Solo),
+    plain(Key::M, AppCommand::Mute),
+    plain(Key::B, AppCommand::Balance),
+    (KeyboardShortcut::new(Modifiers::SHIFT, Key::X), AppCommand::FacePlane),
+    plain(Key::X, AppCommand::TogglePlane),
+    plain(Key::K, AppCommand::ToggleCrop),
+    plain(Key::I, AppCommand::ToggleProbe),
+    (KeyboardShortcut::new(Modifiers::SHIFT, Key::G), AppCommand::ToggleFloor),
+    plain(Key::G, AppCommand::ToggleOverlay),
+    plain(Key::H, AppCommand::ToggleHandles),
+    plain(Key::C, AppCommand::ToggleCompare),
+    plain(Key::D, AppCommand::ShowSlices),
+    (KeyboardShortcut::new(Modifiers::SHIFT, Key::V), AppCommand::ToggleStrip),
+    plain(Key::V, AppCommand::TryLooks),
+    (KeyboardShortcut::new(Modifiers::SHIFT, Key::N), AppCommand::ToggleTransfer),
+    plain(Key::N, AppCommand::ToggleSide),
+    control(Key::Backslash, AppCommand::TogglePictureOnly),
+    plain(Key::Questionmark, AppCommand::ShowHelp),
+    plain(Key::F1, AppCommand::ShowHelp),
 ];
 
 const DIGITS: [Key; 9] =
     [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
 
-impl Command {
+impl AppCommand {
     /// Returns the command's shortcut for menus, or an empty text.
     pub(crate) fn shortcut_text(&self, ctx: &egui::Context) -> String {
         match self {
@@ -104,12 +104,12 @@ pub(crate) fn key_text(ctx: &egui::Context, shortcut: KeyboardShortcut) -> Strin
 
 /// Adds the commands whose shortcuts were pressed. Letters go to text fields while one is edited, in the frame after
 /// that, and while a window for text input is open.
-pub(crate) fn from_keys(ctx: &egui::Context, commands: &mut Vec<Command>) {
+pub(crate) fn commands_from_keys(ctx: &egui::Context, commands: &mut Vec<AppCommand>) {
     if is_typing(ctx) {
         reserve_letters(ctx);
     }
     let typing = are_letters_reserved(ctx);
-    commands.extend(view_slots(ctx));
+    commands.extend(view_digit_commands(ctx));
     for (shortcut, command) in &SHORTCUTS {
         let plain = !shortcut.modifiers.command && !is_function_key(shortcut.logical_key);
         if !(typing && plain) && ctx.input_mut(|input| input.consume_shortcut(shortcut)) {
@@ -143,33 +143,34 @@ pub(crate) fn are_letters_reserved(ctx: &egui::Context) -> bool {
 
 /// Returns true if typed letters go into a text field.
 pub(crate) fn is_typing(ctx: &egui::Context) -> bool {
-    ctx.egui_wants_keyboard_input() && ctx.memory(egui::Memory::focused).is_some_and(|id| is_text(ctx, id))
+    ctx.egui_wants_keyboard_input()
+        && ctx.memory(egui::Memory::focused).is_some_and(|id| is_text_field(ctx, id))
 }
 
 /// Returns the commands of the digits pressed with Control, or with Control and Shift. Digits are identified by the
 /// physical key: with Shift, each keyboard layout has other characters.
-fn view_slots(ctx: &egui::Context) -> Vec<Command> {
+fn view_digit_commands(ctx: &egui::Context) -> Vec<AppCommand> {
     let slot = |event: &Event| {
         let Event::Key { key, physical_key, pressed: true, modifiers, .. } = event else { return None };
         let slot = DIGITS.iter().position(|digit| *digit == physical_key.unwrap_or(*key))? as u8 + 1;
         (modifiers.command && !modifiers.alt).then_some(if modifiers.shift {
-            Command::StoreView(slot)
+            AppCommand::StoreView(slot)
         } else {
-            Command::RecallView(slot)
+            AppCommand::RecallView(slot)
         })
     };
     ctx.input(|input| input.events.iter().filter_map(slot).collect())
 }
 
 /// Returns true if a widget is a text field that is being edited.
-fn is_text(ctx: &egui::Context, id: egui::Id) -> bool {
+fn is_text_field(ctx: &egui::Context, id: egui::Id) -> bool {
     egui::TextEdit::load_state(ctx, id).is_some()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::common::commands::listed;
+    use crate::app::common::commands::searchable_commands;
 
     #[test]
     fn no_two_commands_share_a_key_or_a_name() {
@@ -178,7 +179,7 @@ mod tests {
                 assert!(key != other_key, "{command:?} and {other:?}");
             }
         }
-        let mut names: Vec<_> = listed().iter().map(Command::label).collect();
+        let mut names: Vec<_> = searchable_commands().iter().map(AppCommand::label).collect();
         let count = names.len();
         names.sort();
         names.dedup();
@@ -187,7 +188,7 @@ mod tests {
 
     /// Returns the commands of a frame in which G was pressed; `reserves`: the letters of that frame are reserved for
     /// text.
-    fn commands_of_g(ctx: &egui::Context, reserves: bool) -> Vec<Command> {
+    fn commands_of_g(ctx: &egui::Context, reserves: bool) -> Vec<AppCommand> {
         let key = Event::Key {
             key: Key::G,
             physical_key: None,
@@ -198,7 +199,7 @@ mod tests {
         let mut commands = Vec::new();
         let input = egui::RawInput { events: vec![key], ..egui::RawInput::default() };
         let mut output = ctx.run_ui(input, |ui| {
-            from_keys(ui.ctx(), &mut commands);
+            commands_from_keys(ui.ctx(), &mut commands);
             if reserves {
                 reserve_letters(ui.ctx());
             }
@@ -217,7 +218,10 @@ mod tests {
     #[test]
     fn everything_with_a_key_can_be_found_by_its_name() {
         for (_, command) in SHORTCUTS {
-            assert!(listed().contains(&command) || command == Command::ShowPalette, "{command:?}");
+            assert!(
+                searchable_commands().contains(&command) || command == AppCommand::ShowPalette,
+                "{command:?}"
+            );
         }
     }
 }

@@ -20,7 +20,7 @@ pub(crate) const VALUE_WIDTH: f32 = 62.0;
 pub(crate) const RESET_WIDTH: f32 = 16.0;
 
 /// Font size of texts and buttons, in points.
-pub(crate) const LETTERS: f32 = 13.0;
+pub(crate) const FONT_SIZE: f32 = 13.0;
 
 /// Radius of a light's handle, in points.
 pub(crate) const HANDLE_RADIUS: f32 = 8.0;
@@ -37,9 +37,9 @@ pub(crate) const FADE_S: f32 = 0.25;
 /// Colour of selected or active elements.
 pub(crate) const ACCENT: Color32 = Color32::from_rgb(0xe9, 0xae, 0x4a);
 /// Colour of text over pictures, whatever the theme of the window.
-pub(crate) const EYE_CURVE: Color32 = Color32::from_rgb(0xe8, 0xec, 0xf2);
+pub(crate) const PICTURE_TEXT: Color32 = Color32::from_rgb(0xe8, 0xec, 0xf2);
 /// Colour of small shares in bars of the side panel, and of the histogram in the dark theme.
-pub(crate) const HISTOGRAM: Color32 = Color32::from_rgb(0x4a, 0x52, 0x60);
+pub(crate) const LOW_BAR: Color32 = Color32::from_rgb(0x4a, 0x52, 0x60);
 /// Edge length of a checkerboard field, in points.
 pub(crate) const CHECKER_EDGE: f32 = 8.0;
 /// Colours of the axes x, y and z of the grid.
@@ -59,7 +59,7 @@ pub(crate) const EMPTY_CANVAS: Color32 = Color32::from_rgb(0x1b, 0x1e, 0x24);
 
 /// Colours of the transfer function's plot.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct PlotInk {
+pub(crate) struct PlotColors {
     /// Colours of the two kinds of checkerboard fields behind the curve's colours.
     pub checker: [Color32; 2],
     /// Colour of the histogram bars.
@@ -69,17 +69,17 @@ pub(crate) struct PlotInk {
     /// Colour of the lighting curve.
     pub light: Color32,
     /// Colour behind numbers and around points.
-    pub ground: Color32,
+    pub background: Color32,
 }
 
-impl PlotInk {
+impl PlotColors {
     /// Colours of the plot in the dark theme.
     pub(crate) const DARK: Self = Self {
         checker: [Color32::from_rgb(0x22, 0x25, 0x2b), Color32::from_rgb(0x2b, 0x2f, 0x36)],
-        histogram: HISTOGRAM,
-        eye: EYE_CURVE,
+        histogram: LOW_BAR,
+        eye: PICTURE_TEXT,
         light: Color32::from_rgb(0xff, 0xc1, 0x4d),
-        ground: OUTLINE,
+        background: OUTLINE,
     };
     /// Colours of the plot in the light theme: each has at least the contrast of its dark counterpart.
     const LIGHT: Self = Self {
@@ -87,11 +87,11 @@ impl PlotInk {
         histogram: Color32::from_rgb(0xb3, 0xbb, 0xc8),
         eye: Color32::from_rgb(0x20, 0x26, 0x30),
         light: Color32::from_rgb(0xa8, 0x5c, 0x00),
-        ground: Color32::from_rgb(0xff, 0xff, 0xff),
+        background: Color32::from_rgb(0xff, 0xff, 0xff),
     };
 
     /// Returns the plot colours of the window's theme.
-    pub(crate) fn of(visuals: &egui::Visuals) -> Self {
+    pub(crate) fn for_visuals(visuals: &egui::Visuals) -> Self {
         if visuals.dark_mode { Self::DARK } else { Self::LIGHT }
     }
 }
@@ -145,8 +145,8 @@ pub(crate) fn apply(ctx: &egui::Context) {
     ctx.all_styles_mut(|style| {
         style.spacing.item_spacing = Vec2::new(6.0, 5.0);
         style.spacing.interact_size.y = 20.0;
-        style.text_styles.insert(TextStyle::Body, FontId::proportional(LETTERS));
-        style.text_styles.insert(TextStyle::Button, FontId::proportional(LETTERS));
+        style.text_styles.insert(TextStyle::Body, FontId::proportional(FONT_SIZE));
+        style.text_styles.insert(TextStyle::Button, FontId::proportional(FONT_SIZE));
         style.text_styles.insert(TextStyle::Small, FontId::proportional(11.0));
         style.visuals.slider_trailing_fill = true;
     });

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::app::text::common::LengthUnit;
-use crate::app::worker::loader::Reading;
-use crate::data::load::Held;
+use crate::app::worker::loader::ReadChoices;
+use crate::data::load::FileContents;
 use crate::data::{
-    CountedLabel, DataKind, Dataset, Histogram, Shown, ValueRange, ValueRanges, Volume, VoxelType,
+    CountedLabel, DataKind, Dataset, DensityMapping, Histogram, ValueRange, ValueRanges, Volume, VoxelType,
 };
 use crate::math::SceneSpace;
 use crate::model::{LabelTable, Settings};
@@ -20,9 +20,9 @@ pub(crate) struct VolumeFacts {
     /// Path of the file, or name of a built-in volume.
     pub source: PathBuf,
     /// Options with which the volume was read.
-    pub reading: Reading,
+    pub reading: ReadChoices,
     /// Series, channels, time steps and components of the file.
-    pub held: Held,
+    pub held: FileContents,
     /// Number of voxels along x, y and z.
     pub dims: [usize; 3],
     /// Number of voxels along x, y and z in the file, before averaging.
@@ -30,7 +30,7 @@ pub(crate) struct VolumeFacts {
     /// Name of the voxel type, such as `uint8`.
     pub voxel_type: &'static str,
     /// Volume itself, with the metadata of its file.
-    pub of: Arc<Volume>,
+    pub volume: Arc<Volume>,
     /// Distance between voxel centres along x, y and z, in mm.
     pub spacing_mm: [f64; 3],
     /// True if the voxel size is unknown, so that the spacing is not in mm.
@@ -38,7 +38,7 @@ pub(crate) struct VolumeFacts {
     /// Full and robust ranges of the values.
     pub ranges: ValueRanges,
     /// Quantity that densities stand for in the picture and in the histogram.
-    pub shown: Shown,
+    pub shown: DensityMapping,
     /// Range of values that the picture shows.
     pub range: ValueRange,
     /// Number of integers in the range shown; `None` for floating-point voxels.
@@ -70,7 +70,7 @@ pub(crate) struct LabelRow {
     /// Value of the voxels with this label.
     pub number: i64,
     /// Number of the label whose look it has: its own, unless there are more labels than classes.
-    pub stands_for: i64,
+    pub look_number: i64,
     /// Number of voxels with this label.
     pub voxels: u64,
     /// Name of the label in the file; empty if there is none.
@@ -92,9 +92,13 @@ impl LabelRow {
         };
         let row = |label: &CountedLabel| Self {
             number: label.number,
-            stands_for: labels.standing_for(label.number),
+            look_number: labels.representative_of(label.number),
             voxels: label.voxels,
-            in_file: volume.hints().labels.get(label.number).map_or_else(String::new, |own| own.name.clone()),
+            in_file: volume
+                .metadata()
+                .labels
+                .get(label.number)
+                .map_or_else(String::new, |own| own.name.clone()),
         };
         labels.labels().iter().map(row).collect()
     }
@@ -102,7 +106,7 @@ impl LabelRow {
 
 impl VolumeFacts {
     /// Collects the facts about a dataset.
-    pub(crate) fn of(source: PathBuf, reading: Reading, dataset: &Dataset) -> Self {
+    pub(crate) fn new(source: PathBuf, reading: ReadChoices, dataset: &Dataset) -> Self {
         let volume = dataset.volume();
         let voxel_type = volume.samples().voxel_type();
         let range = volume.shown_range();
@@ -111,15 +115,15 @@ impl VolumeFacts {
             name: volume.name().to_owned(),
             source,
             reading,
-            held: volume.held().clone(),
+            held: volume.contents().clone(),
             dims: volume.dims(),
             file_dims: volume.file_dims(),
             voxel_type: voxel_type.name(),
-            of: Arc::clone(volume),
+            volume: Arc::clone(volume),
             spacing_mm: volume.spacing_mm().into(),
             has_unknown_scale: volume.has_unknown_scale(),
             ranges: volume.ranges(),
-            shown: volume.shown(),
+            shown: volume.density_mapping(),
             range,
             levels: whole.then(|| levels_in(range)),
             non_finite_voxels: volume.non_finite_voxels(),
@@ -134,7 +138,7 @@ impl VolumeFacts {
 
     /// Unit of length that suits the size of the volume.
     pub(crate) fn length_unit(&self) -> LengthUnit {
-        LengthUnit::of(self.of.length_unit())
+        LengthUnit::from_spacing_unit(self.volume.length_unit())
     }
 
     /// Finds the label of the voxels with a value, in label maps.
@@ -148,15 +152,15 @@ impl VolumeFacts {
     }
 
     /// Updates the facts for a dataset that shows other values or is corrected.
-    pub(crate) fn follow(&mut self, dataset: &Dataset) {
-        let fresh = Self::of(std::mem::take(&mut self.source), std::mem::take(&mut self.reading), dataset);
+    pub(crate) fn update(&mut self, dataset: &Dataset) {
+        let fresh = Self::new(std::mem::take(&mut self.source), std::mem::take(&mut self.reading), dataset);
         *self = fresh;
     }
 }
 
 /// Number of decimals, 0 to 6, that resolves a range into 100 to 1000 steps; ranges of at least 100 have whole
 /// numbers.
-pub(crate) fn decimals(range: ValueRange) -> usize {
+pub(crate) fn range_decimals(range: ValueRange) -> usize {
     let span = range.span().abs().max(1e-300);
     (2.0 - span.log10().floor()).clamp(0.0, 6.0) as usize
 }

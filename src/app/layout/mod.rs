@@ -1,8 +1,8 @@
 //! Layout of the main window: which panels and tool windows are shown. egui itself stores their sizes, the open
 //! sections, and the zoom factor.
 
-mod around;
-mod over;
+mod outer_panels;
+mod overlay_windows;
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -13,15 +13,15 @@ use serde::{Deserialize, Serialize};
 use super::App;
 use super::common::dock;
 use crate::app::text;
-use crate::app::windows::slices::plane::Convention;
+use crate::app::windows::slices::plane::ViewingConvention;
 
 /// Key under which the layout is stored in egui's persistent storage.
-const NAME: &str = "layout";
+const LAYOUT_KEY: &str = "layout";
 
 /// Panels and tool windows that are shown, as stored between runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub(crate) struct Layout {
+pub(crate) struct WindowLayout {
     /// True if the side panel is shown.
     pub side: bool,
     /// True if the transfer function editor is shown.
@@ -35,7 +35,7 @@ pub(crate) struct Layout {
     /// True if the window with slices of light volumes is open.
     pub light_slice: bool,
     /// Side of the screen on which slices of a body show its right side.
-    pub slice_convention: Convention,
+    pub slice_convention: ViewingConvention,
     /// Folder of the last export, where the next one is proposed.
     pub exports: Option<PathBuf>,
     /// Colour theme: dark, light, or that of the system.
@@ -45,7 +45,7 @@ pub(crate) struct Layout {
     pub picture_only: bool,
 }
 
-impl Default for Layout {
+impl Default for WindowLayout {
     fn default() -> Self {
         Self {
             side: true,
@@ -55,7 +55,7 @@ impl Default for Layout {
             docked: [text::export::TITLE.to_owned()].into(),
             slices: false,
             light_slice: false,
-            slice_convention: Convention::default(),
+            slice_convention: ViewingConvention::default(),
             exports: None,
             theme: ThemePreference::Dark,
             picture_only: false,
@@ -63,10 +63,10 @@ impl Default for Layout {
     }
 }
 
-impl Layout {
+impl WindowLayout {
     /// Restores the layout of the last run; the default layout if none is stored or the stored one is damaged.
-    pub(crate) fn kept(storage: Option<&dyn eframe::Storage>) -> Self {
-        storage.and_then(|storage| eframe::get_value(storage, NAME)).unwrap_or_default()
+    pub(crate) fn restore(storage: Option<&dyn eframe::Storage>) -> Self {
+        storage.and_then(|storage| eframe::get_value(storage, LAYOUT_KEY)).unwrap_or_default()
     }
 
     /// Applies the chosen colour theme and the docked tools to the window.
@@ -76,14 +76,14 @@ impl Layout {
     }
 
     /// Stores the layout for the next run.
-    pub(crate) fn keep(&self, storage: &mut dyn eframe::Storage) {
-        eframe::set_value(storage, NAME, self);
+    pub(crate) fn store(&self, storage: &mut dyn eframe::Storage) {
+        eframe::set_value(storage, LAYOUT_KEY, self);
     }
 }
 
 impl App {
     /// Switches between the picture alone and the panels, and notes which key brings the panels back.
-    pub(in crate::app) fn toggle_picture_only(&mut self) {
+    pub(crate) fn toggle_picture_only(&mut self) {
         self.layout.picture_only ^= true;
         if self.layout.picture_only {
             self.messages.note(text::messages::PICTURE_ONLY);
@@ -91,7 +91,7 @@ impl App {
     }
 
     /// Leaves the picture-only mode if Escape was pressed and no drag or widget has consumed the key.
-    pub(in crate::app) fn leave_picture_only(&mut self, ctx: &egui::Context) {
+    pub(crate) fn leave_picture_only(&mut self, ctx: &egui::Context) {
         let is_free = self.layout.picture_only && ctx.dragged_id().is_none();
         if is_free && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) {
             self.layout.picture_only = false;
@@ -104,17 +104,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_kept_of_a_layout_is_found_again() {
-        let mut layout = Layout { side: false, slices: true, ..Layout::default() };
+    fn stored_layout_is_restored() {
+        let mut layout = WindowLayout { side: false, slices: true, ..WindowLayout::default() };
         layout.picture_only = true;
         let text = serde_json::to_string(&layout).unwrap();
-        let again: Layout = serde_json::from_str(&text).unwrap();
+        let again: WindowLayout = serde_json::from_str(&text).unwrap();
         assert_eq!(
             again,
-            Layout { side: false, slices: true, ..Layout::default() },
+            WindowLayout { side: false, slices: true, ..WindowLayout::default() },
             "and the panels are there"
         );
-        let newer: Layout = serde_json::from_str(r#"{"transfer": false, "more": 1}"#).unwrap();
+        let newer: WindowLayout = serde_json::from_str(r#"{"transfer": false, "more": 1}"#).unwrap();
         assert!(newer.side && !newer.transfer);
     }
 }

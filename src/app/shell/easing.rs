@@ -8,19 +8,19 @@ use eframe::egui;
 pub(super) const EASE_S: f64 = 0.3;
 
 /// Returns true while the user holds a pointer button or a key, or edits text.
-pub(super) fn is_held(ctx: &egui::Context) -> bool {
+pub(super) fn is_user_active(ctx: &egui::Context) -> bool {
     ctx.input(|input| input.pointer.any_down() || !input.keys_down.is_empty()) || ctx.text_edit_focused()
 }
 
 /// Returns the eased progress, from 0 to 1, of a change that began at `since_s`.
-pub(super) fn share(since_s: f64, now_s: f64) -> f64 {
+pub(super) fn eased_progress(since_s: f64, now_s: f64) -> f64 {
     let t = ((now_s - since_s) / EASE_S).clamp(0.0, 1.0);
     // Smoothstep: the cubic with zero slope at both ends.
     t * t * (3.0 - 2.0 * t)
 }
 
 /// Interpolates a positive factor geometrically, since equal ratios look like equal steps.
-pub(super) fn towards(from: f64, to: f64, share: f64) -> f64 {
+pub(super) fn interpolate_factor(from: f64, to: f64, share: f64) -> f64 {
     if share >= 1.0 { to } else { from * (to / from).powf(share) }
 }
 
@@ -30,8 +30,11 @@ mod tests {
 
     #[test]
     fn changes_end_where_they_should() {
-        assert_eq!((share(5.0, 4.0), share(5.0, 5.0), share(5.0, 5.0 + EASE_S)), (0.0, 0.0, 1.0));
-        assert!((share(5.0, 5.0 + EASE_S / 2.0) - 0.5).abs() < 1e-9);
-        assert_eq!((towards(2.0, 8.0, 0.5), towards(2.0, 0.3, 1.0)), (4.0, 0.3));
+        assert_eq!(
+            (eased_progress(5.0, 4.0), eased_progress(5.0, 5.0), eased_progress(5.0, 5.0 + EASE_S)),
+            (0.0, 0.0, 1.0)
+        );
+        assert!((eased_progress(5.0, 5.0 + EASE_S / 2.0) - 0.5).abs() < 1e-9);
+        assert_eq!((interpolate_factor(2.0, 8.0, 0.5), interpolate_factor(2.0, 0.3, 1.0)), (4.0, 0.3));
     }
 }

@@ -16,15 +16,15 @@ use std::path::PathBuf;
 use eframe::egui::{Pos2, Rect};
 use serde_json::{Map, Value, json};
 
-use crate::app::viewport::Response;
+use crate::app::viewport::ResponseTimes;
 use crate::app::viewport::canvas::Canvas;
 
 /// Environment variable that names the file.
-const VARIABLE: &str = "CHIAROSCURO_STATUS";
+const STATUS_PATH_VARIABLE: &str = "CHIAROSCURO_STATUS";
 
 /// Contents of the status file.
 #[derive(Debug)]
-pub(crate) struct State<'a> {
+pub(crate) struct WindowStatus<'a> {
     /// True while a volume is being opened.
     pub loading: bool,
     /// True if the full-quality picture is on screen.
@@ -38,7 +38,7 @@ pub(crate) struct State<'a> {
     /// Longest time that one frame has occupied the window's thread, in ms.
     pub longest_ui_ms: f64,
     /// Statistics of the response times, in ms.
-    pub response: Response,
+    pub response: ResponseTimes,
     /// Errors since the last volume was opened.
     pub errors: &'a [String],
     /// Title of the dialog in which a path is typed, if it is open.
@@ -49,7 +49,7 @@ pub(crate) struct State<'a> {
     pub pixels_per_point: f32,
 }
 
-impl State<'_> {
+impl WindowStatus<'_> {
     fn json(&self) -> Value {
         let pixels = |points: f32| (points * self.pixels_per_point).round() as i64;
         let viewport = self.canvas.map(|canvas| {
@@ -80,7 +80,7 @@ impl State<'_> {
             "response_ms": {
                 "count": self.response.count,
                 "mean": self.response.mean_ms.round(),
-                "worst": self.response.worst_ms.round(),
+                "worst": self.response.max_ms.round(),
             },
             "errors": self.errors,
             "path_window": self.path_window,
@@ -99,7 +99,7 @@ pub(crate) struct StatusFile {
 impl StatusFile {
     /// Creates the writer for the path in the environment.
     pub(crate) fn from_environment() -> Self {
-        Self { path: std::env::var_os(VARIABLE).map(PathBuf::from), written: String::new() }
+        Self { path: std::env::var_os(STATUS_PATH_VARIABLE).map(PathBuf::from), written: String::new() }
     }
 
     /// True if the environment names a status file.
@@ -108,13 +108,13 @@ impl StatusFile {
     }
 
     /// Rewrites the file if anything has changed.
-    pub(crate) fn update(&mut self, state: &State<'_>) {
+    pub(crate) fn update(&mut self, state: &WindowStatus<'_>) {
         let Some(path) = &self.path else { return };
         let text = state.json().to_string();
         if text != self.written {
             // Atomic write: readers never see half of it.
             if let Err(err) = crate::export::write_atomically(path, text.as_bytes()) {
-                log::warn!("{VARIABLE}: {err}");
+                log::warn!("{STATUS_PATH_VARIABLE}: {err}");
                 self.path = None;
             }
             self.written = text;

@@ -9,7 +9,7 @@ pub enum AppError {
     #[error(transparent)]
     Gpu(#[from] GpuError),
     /// Failure of the window system.
-    #[error("the window could not be opened: {}; a running desktop session is needed", cause(.0))]
+    #[error("the window could not be opened: {}; a running desktop session is needed", window_error_reason(.0))]
     Window(#[from] eframe::Error),
     /// Failure of the operating system to start a thread.
     #[error("no thread could be started: {0}")]
@@ -18,7 +18,7 @@ pub enum AppError {
 
 /// Returns the window system's reason, without the source location in its library, which is a path on the build
 /// machine: `winit EventLoopError: os error at FILE:LINE: REASON`.
-fn cause(error: &eframe::Error) -> String {
+fn window_error_reason(error: &eframe::Error) -> String {
     let text = error.to_string();
     let reason = text.split_once(".rs:").and_then(|(_, rest)| {
         let (line, reason) = rest.split_once(": ")?;

@@ -1,9 +1,9 @@
 //! Start and end of a window: its options, its construction, and the hand-over of its state after a lost device.
 
-mod begin;
-pub(super) mod carried;
+pub(super) mod desktop_error;
 pub(super) mod error;
+pub(super) mod handover;
 mod icon;
-pub(super) mod no_adapter;
+pub(super) mod main_loop;
+mod new_window;
 pub(super) mod options;
-pub(super) mod run;

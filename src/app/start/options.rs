@@ -6,11 +6,11 @@ use crate::data::load::LoadOptions;
 use crate::model::Settings;
 
 /// Function that changes settings once.
-pub type Adjustment = Box<dyn FnOnce(Settings) -> Settings + Send>;
+pub type SettingsAdjustment = Box<dyn FnOnce(Settings) -> Settings + Send>;
 
 /// Options of the window, from the command line.
 #[derive(Default)]
-pub struct Options {
+pub struct WindowOptions {
     /// Source to open: a volume file, `builtin:NAME[:N]`, a session or an exported picture. The built-in scene if
     /// `None`.
     pub source: Option<PathBuf>,
@@ -23,12 +23,12 @@ pub struct Options {
     /// True if looks may open volumes anywhere without a confirmation.
     pub trust_paths: bool,
     /// Change of the first volume's settings, after the session.
-    pub adjust: Option<Adjustment>,
-    /// Storage folder for the state that outlives a run; see [`super::run::storage_folder`].
+    pub adjust: Option<SettingsAdjustment>,
+    /// Storage folder for the state that outlives a run; see [`super::main_loop::storage_folder`].
     pub storage: Option<PathBuf>,
 }
 
-impl std::fmt::Debug for Options {
+impl std::fmt::Debug for WindowOptions {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Options")
             .field("source", &self.source)

@@ -6,13 +6,13 @@ use crate::data::SpacingUnit;
 pub(crate) const ADVANCED: &str = "Advanced";
 
 /// Suffix of a field that holds a factor.
-pub(crate) const TIMES: &str = " ×";
+pub(crate) const FACTOR_SUFFIX: &str = " ×";
 
 /// Caption of the button that abandons a running task or closes a question.
 pub(crate) const CANCEL: &str = "Cancel";
 
 /// Suffix of a length in voxels.
-pub(crate) const VOX: &str = " vox";
+pub(crate) const VOXELS_SUFFIX: &str = " vox";
 
 /// Unit of length for display, with its suffix.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,14 +26,18 @@ pub(crate) struct LengthUnit {
 impl LengthUnit {
     /// Returns the unit in which a length has digits before the decimal point: millimetres from 1 mm, micrometres
     /// from 1 µm, nanometres below; voxels where the voxel size is unknown.
-    pub(crate) fn showing(length_mm: f64, has_unknown_scale: bool) -> Self {
-        Self::of(if has_unknown_scale { SpacingUnit::Voxels } else { SpacingUnit::showing(length_mm) })
+    pub(crate) fn for_length(length_mm: f64, has_unknown_scale: bool) -> Self {
+        Self::from_spacing_unit(if has_unknown_scale {
+            SpacingUnit::Voxels
+        } else {
+            SpacingUnit::suiting_length(length_mm)
+        })
     }
 
     /// Converts the unit of a voxel spacing into a unit for display.
-    pub(crate) fn of(unit: SpacingUnit) -> Self {
+    pub(crate) fn from_spacing_unit(unit: SpacingUnit) -> Self {
         let suffix = match unit {
-            SpacingUnit::Voxels => VOX,
+            SpacingUnit::Voxels => VOXELS_SUFFIX,
             SpacingUnit::Nm => " nm",
             SpacingUnit::Um => " µm",
             SpacingUnit::Mm => " mm",
@@ -53,12 +57,12 @@ impl LengthUnit {
 pub(crate) const DEGREES: &str = "°";
 
 /// Accessible name of the button that resets a setting.
-pub(crate) fn reset(label: &str) -> String {
+pub(crate) fn reset_name(label: &str) -> String {
     format!("Reset {label}")
 }
 
 /// Tooltip of the button that resets a number.
-pub(crate) fn reset_to(value: &str) -> String {
+pub(crate) fn reset_tooltip(value: &str) -> String {
     format!("Reset to {value}")
 }
 
@@ -66,6 +70,6 @@ pub(crate) fn reset_to(value: &str) -> String {
 pub(crate) const FIRST_LOOK: &str = "the first look";
 
 /// Tooltip of the button that resets a section of the side panel.
-pub(crate) fn reset_to_first_look(section: &str) -> String {
-    format!("{} to {FIRST_LOOK}", reset(section))
+pub(crate) fn reset_section_tooltip(section: &str) -> String {
+    format!("{} to {FIRST_LOOK}", reset_name(section))
 }

@@ -4,33 +4,33 @@ use std::collections::BTreeSet;
 
 use eframe::egui::{Painter, PointerButton, Pos2, Rect, Response, Stroke, Ui};
 
-use super::plot::Axes;
+use super::plot::PlotAxes;
 use super::theme;
 use crate::data::ValueRange;
 use crate::model::TransferFunction;
 
 /// Indices of the selected points, and the rubber band that selects more of them.
 #[derive(Debug, Default, Clone, PartialEq)]
-pub(super) struct Selection {
+pub(super) struct PointSelection {
     points: BTreeSet<usize>,
     /// True if the first selected point is to take the keyboard focus.
     pub wants_focus: bool,
     /// Corner at which the rubber band began.
-    frame: Option<Pos2>,
+    rubber_band_start: Option<Pos2>,
 }
 
 /// Distance by which points are moved, along both axes.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Shift {
+pub(super) struct PointShift {
     /// Distance along the value axis, in data units.
     pub value: f64,
     /// Distance along the opacity axis, positive towards opaque.
     pub opacity: f64,
 }
 
-impl Selection {
+impl PointSelection {
     /// Selects one point and no other.
-    pub(super) fn only(&mut self, index: usize) {
+    pub(super) fn select_only(&mut self, index: usize) {
         self.points = [index].into();
     }
 
@@ -42,7 +42,7 @@ impl Selection {
     }
 
     /// Selects all of `count` points.
-    pub(super) fn all(&mut self, count: usize) {
+    pub(super) fn select_all(&mut self, count: usize) {
         self.points = (0..count).collect();
         self.wants_focus = true;
     }
@@ -53,35 +53,41 @@ impl Selection {
     }
 
     /// Returns true if a point is selected.
-    pub(super) fn has(&self, index: usize) -> bool {
+    pub(super) fn contains(&self, index: usize) -> bool {
         self.points.contains(&index)
     }
 
     /// Returns the selected indices below `count` in ascending order, and drops the others.
-    pub(super) fn within(&mut self, count: usize) -> Vec<usize> {
+    pub(super) fn retained_indices(&mut self, count: usize) -> Vec<usize> {
         self.points.retain(|&index| index < count);
         self.points.iter().copied().collect()
     }
 
     /// Selects the points inside a rubber band drawn with the mouse; with Shift, the previous selection is kept.
-    pub(super) fn frame(&mut self, ui: &Ui, response: &Response, axes: &Axes, function: &TransferFunction) {
+    pub(super) fn rubber_band(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        axes: &PlotAxes,
+        function: &TransferFunction,
+    ) {
         let primary = PointerButton::Primary;
         if response.drag_started_by(primary) {
-            self.frame = ui.input(|input| input.pointer.press_origin());
+            self.rubber_band_start = ui.input(|input| input.pointer.press_origin());
         }
-        let Some((start, now)) = self.frame.zip(ui.ctx().pointer_latest_pos()) else { return };
+        let Some((start, now)) = self.rubber_band_start.zip(ui.ctx().pointer_latest_pos()) else { return };
         let frame = Rect::from_two_pos(start, now);
         if response.dragged_by(primary) {
-            paint(&ui.painter_at(axes.area), frame);
+            paint_rubber_band(&ui.painter_at(axes.area), frame);
         } else {
-            self.frame = None;
+            self.rubber_band_start = None;
         }
         if response.dragged_by(primary) || response.drag_stopped_by(primary) {
             if !ui.input(|input| input.modifiers.shift) {
                 self.points.clear();
             }
             let inside = |point: &crate::model::ControlPoint| {
-                axes.shows(point.value) && frame.contains(axes.position(point.value, point.opacity))
+                axes.contains_value(point.value) && frame.contains(axes.position(point.value, point.opacity))
             };
             let found = function.points.iter().enumerate().filter(|(_, point)| inside(point));
             self.points.extend(found.map(|(index, _)| index));
@@ -90,8 +96,8 @@ impl Selection {
     }
 
     /// Removes the selected points, but always leaves one: a function without points could never be seen again.
-    pub(super) fn remove(&mut self, function: &mut TransferFunction) {
-        for index in self.within(function.points.len()).into_iter().rev() {
+    pub(super) fn remove_points(&mut self, function: &mut TransferFunction) {
+        for index in self.retained_indices(function.points.len()).into_iter().rev() {
             if function.points.len() > 1 {
                 function.points.remove(index);
             }
@@ -101,9 +107,9 @@ impl Selection {
 
     /// Moves the selected points together, by at most the distance at which none of them passes an unselected
     /// neighbour, leaves the values, or leaves the opacities 0 to 1.
-    pub(super) fn shift(&mut self, function: &mut TransferFunction, range: ValueRange, by: Shift) {
-        let Shift { value, opacity } = by;
-        let selected = self.within(function.points.len());
+    pub(super) fn move_points(&mut self, function: &mut TransferFunction, range: ValueRange, by: PointShift) {
+        let PointShift { value, opacity } = by;
+        let selected = self.retained_indices(function.points.len());
         let points = &function.points;
         let (mut left, mut right, mut down, mut up) =
             (f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY);
@@ -112,10 +118,10 @@ impl Selection {
             let point = points[index];
             // Points from a preset may lie beyond this volume's values, and may stay there.
             let (mut low, mut high) = (range.low.min(point.value), range.high.max(point.value));
-            if let Some(before) = index.checked_sub(1).filter(|&before| !self.has(before)) {
+            if let Some(before) = index.checked_sub(1).filter(|&before| !self.contains(before)) {
                 low = points[before].value;
             }
-            if let Some(after) = points.get(index + 1).filter(|_| !self.has(index + 1)) {
+            if let Some(after) = points.get(index + 1).filter(|_| !self.contains(index + 1)) {
                 high = after.value;
             }
             (left, right) = (left.max(low - point.value), right.min(high - point.value));
@@ -131,7 +137,7 @@ impl Selection {
     }
 }
 
-fn paint(painter: &Painter, frame: Rect) {
+fn paint_rubber_band(painter: &Painter, frame: Rect) {
     painter.rect_filled(frame, 0.0, theme::ACCENT.gamma_multiply(0.12));
     painter.rect_stroke(frame, 0.0, Stroke::new(1.0, theme::ACCENT), eframe::egui::StrokeKind::Inside);
 }
@@ -149,35 +155,50 @@ mod tests {
         }
     }
 
-    fn moved(selected: &[usize], value: f64, opacity: f64) -> Vec<(f64, f64)> {
-        let (mut function, mut selection) = (function(), Selection::default());
+    fn points_after_shift(selected: &[usize], value: f64, opacity: f64) -> Vec<(f64, f64)> {
+        let (mut function, mut selection) = (function(), PointSelection::default());
         for &index in selected {
             selection.toggle(index);
         }
-        selection.shift(&mut function, ValueRange::new(0.0, 100.0), Shift { value, opacity });
+        selection.move_points(&mut function, ValueRange::new(0.0, 100.0), PointShift { value, opacity });
         function.points.iter().map(|point| (point.value, (point.opacity * 1e6).round() / 1e6)).collect()
     }
 
     #[test]
     fn points_move_together_and_pass_none() {
-        assert_eq!(moved(&[1, 2], 10.0, 0.1), [(0.0, 0.0), (30.0, 0.4), (50.0, 0.9), (90.0, 1.0)]);
-        assert_eq!(moved(&[1, 2], 70.0, 0.9)[1..3], [(70.0, 0.5), (90.0, 1.0)], "up to what stays");
-        assert_eq!(moved(&[1], -50.0, -0.9)[1], (0.0, 0.0));
-        assert_eq!(moved(&[3], 50.0, 0.0)[3], (100.0, 1.0), "up to the values' end");
-        assert_eq!(moved(&[], 5.0, 0.5), moved(&[1], 0.0, 0.0));
-        assert_eq!(moved(&[7], 5.0, 0.5), moved(&[], 0.0, 0.0), "points that are gone");
+        assert_eq!(
+            points_after_shift(&[1, 2], 10.0, 0.1),
+            [(0.0, 0.0), (30.0, 0.4), (50.0, 0.9), (90.0, 1.0)]
+        );
+        assert_eq!(
+            points_after_shift(&[1, 2], 70.0, 0.9)[1..3],
+            [(70.0, 0.5), (90.0, 1.0)],
+            "up to what stays"
+        );
+        assert_eq!(points_after_shift(&[1], -50.0, -0.9)[1], (0.0, 0.0));
+        assert_eq!(points_after_shift(&[3], 50.0, 0.0)[3], (100.0, 1.0), "up to the values' end");
+        assert_eq!(points_after_shift(&[], 5.0, 0.5), points_after_shift(&[1], 0.0, 0.0));
+        assert_eq!(
+            points_after_shift(&[7], 5.0, 0.5),
+            points_after_shift(&[], 0.0, 0.0),
+            "points that are gone"
+        );
     }
 
     #[test]
     fn rounding_carries_no_point_past_another() {
         let mut function = function();
-        let mut selection = Selection::default();
-        selection.only(1);
+        let mut selection = PointSelection::default();
+        selection.select_only(1);
         for i in 1..2000 {
             let low = 12.3 + f64::from(i) * 0.001_7;
             function.points[0].value = low;
             function.points[1].value = 20.0 + f64::from(i) * 0.009;
-            selection.shift(&mut function, ValueRange::new(0.0, 100.0), Shift { value: -1e3, opacity: 0.0 });
+            selection.move_points(
+                &mut function,
+                ValueRange::new(0.0, 100.0),
+                PointShift { value: -1e3, opacity: 0.0 },
+            );
             let found = function.points[1].value;
             assert!(found >= low && found - low < 1e-9, "{found} at {low}");
         }
@@ -185,10 +206,10 @@ mod tests {
 
     #[test]
     fn one_point_always_stays() {
-        let (mut function, mut selection) = (function(), Selection::default());
-        selection.all(4);
-        selection.remove(&mut function);
+        let (mut function, mut selection) = (function(), PointSelection::default());
+        selection.select_all(4);
+        selection.remove_points(&mut function);
         assert_eq!(function.points.len(), 1);
-        assert!(!selection.has(0));
+        assert!(!selection.contains(0));
     }
 }

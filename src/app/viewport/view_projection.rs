@@ -20,7 +20,7 @@ impl ViewProjection {
     }
 
     /// Projects a scene point to the window, in points; `None` behind the eye.
-    pub(crate) fn point(&self, scene: DVec3) -> Option<Pos2> {
+    pub(crate) fn project(&self, scene: DVec3) -> Option<Pos2> {
         let (width, height) = self.size();
         let (x, y, _) = self.camera.pixel_from_scene(scene, width, height)?;
         Some(self.picture.min + vec2(x as f32, y as f32))
@@ -35,7 +35,7 @@ impl ViewProjection {
 
     /// Returns the position on a line, in lengths of `along`, that is nearest to the viewing ray through a point of
     /// the window; `None` if the line is parallel to the ray.
-    pub(crate) fn along(&self, at: Pos2, from: DVec3, along: DVec3) -> Option<f64> {
+    pub(crate) fn nearest_on_line(&self, at: Pos2, from: DVec3, along: DVec3) -> Option<f64> {
         let (origin, direction) = self.ray(at);
         let between = from - origin;
         // Component of the line's direction perpendicular to the ray; the shorter it is, the less accurate the
@@ -60,12 +60,12 @@ mod tests {
                 ViewProjection { camera: Camera { projection, ..Camera::default() }, picture };
             let (from, along) = (DVec3::new(0.2, -0.3, 0.1), DVec3::new(0.0, 0.4, 0.5));
             for share in [-0.7, 0.0, 1.2] {
-                let at = view_projection.point(from + along * share).unwrap();
-                let found = view_projection.along(at, from, along).unwrap();
+                let at = view_projection.project(from + along * share).unwrap();
+                let found = view_projection.nearest_on_line(at, from, along).unwrap();
                 assert!((found - share).abs() < 1e-4, "{projection:?}: {found}, expected {share}");
             }
             let (_, direction) = view_projection.ray(pos2(330.0, 260.0));
-            assert_eq!(view_projection.along(pos2(330.0, 260.0), DVec3::ZERO, direction), None);
+            assert_eq!(view_projection.nearest_on_line(pos2(330.0, 260.0), DVec3::ZERO, direction), None);
         }
     }
 }

@@ -5,15 +5,15 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 use eframe::egui::ColorImage;
 
-use super::difference::Difference;
+use super::difference::PictureDifference;
 use super::quality::QualityLevel;
-use super::request::{FrameRequest, Scene};
+use super::request::{FrameRequest, RenderScene};
 use crate::data::Dataset;
-use crate::gpu::{GpuError, LightFigures, Stage};
+use crate::gpu::{GpuError, LightVolumeStatistics, RenderStage};
 use crate::model::Settings;
 
 /// Finished picture, with its request and quality.
-pub(crate) struct Frame {
+pub(crate) struct FinishedFrame {
     /// Request that the picture answers.
     pub(crate) request: FrameRequest,
     pub(crate) quality: QualityLevel,
@@ -21,12 +21,12 @@ pub(crate) struct Frame {
     pub(crate) dataset: Dataset,
     pub(crate) image: ColorImage,
     /// Right picture of a comparison, and the difference of both.
-    pub(crate) other: Option<(ColorImage, Difference)>,
+    pub(crate) compared: Option<(ColorImage, PictureDifference)>,
 }
 
 /// Statistics of the render thread, for display.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Figures {
+pub(crate) struct RenderStatistics {
     /// Time of the last full-quality picture, in milliseconds.
     pub(crate) full_ms: Option<f64>,
     /// Time of the last preview, in milliseconds.
@@ -36,11 +36,11 @@ pub(crate) struct Figures {
     pub(crate) gpu_bytes: u64,
     pub(crate) light_bytes: u64,
     /// Statistics of each light's volume; `None` for lights without one.
-    pub(crate) light_volumes: Vec<Option<LightFigures>>,
+    pub(crate) light_volumes: Vec<Option<LightVolumeStatistics>>,
     /// Statistics of the sky-visibility volume, if there is one.
-    pub(crate) sky: Option<LightFigures>,
+    pub(crate) sky: Option<LightVolumeStatistics>,
     /// Statistics of the volume of multiply scattered light, if there is one.
-    pub(crate) bounces: Option<LightFigures>,
+    pub(crate) bounces: Option<LightVolumeStatistics>,
     /// Number of footprints splatted for the last full-quality picture; 0 if it was gathered.
     pub(crate) splats: u64,
     /// Share of the visible part of the last full-quality picture that is nearly black, 0 to 1.
@@ -50,12 +50,12 @@ pub(crate) struct Figures {
     /// Number of full-quality pictures that followed previews.
     pub(crate) refinements: u64,
     /// Refinement in progress: its current stage, and the completed fraction.
-    pub(crate) refining: Option<(Stage, f32)>,
+    pub(crate) refinement_progress: Option<(RenderStage, f32)>,
 }
 
 /// Request to measure the balance of a look.
 #[derive(Debug, Clone)]
-pub(crate) struct Measurement {
+pub(crate) struct BalanceRequest {
     /// Number of the measurement, counting up.
     pub(crate) id: u64,
     pub(crate) settings: Box<Settings>,
@@ -64,28 +64,28 @@ pub(crate) struct Measurement {
 /// Messages between the window and the render thread.
 #[derive(Default)]
 pub(crate) struct Mailbox {
-    pub(crate) scene: Option<Scene>,
+    pub(crate) scene: Option<RenderScene>,
     /// New dataset, for the renderer of the present scene.
     pub(crate) dataset: Option<Dataset>,
     pub(crate) frame_request: Option<FrameRequest>,
     pub(crate) closed: bool,
     /// Time budget per frame during interaction, in milliseconds; `None` for the adapter's default.
     pub(crate) frame_ms: Option<f64>,
-    pub(crate) frame: Option<Frame>,
+    pub(crate) frame: Option<FinishedFrame>,
     pub(crate) error: Option<GpuError>,
-    pub(crate) figures: Figures,
+    pub(crate) figures: RenderStatistics,
     /// True while the look is about to change automatically: refinements stop after filling light volumes, before
     /// drawing.
     pub(crate) holds_refinement: bool,
     /// Pending measurement, which starts when no picture is due.
-    pub(crate) measurement: Option<Measurement>,
+    pub(crate) balance_request: Option<BalanceRequest>,
     /// Result of the last measurement, with its number.
-    pub(crate) measured: Option<(u64, Result<f64, GpuError>)>,
+    pub(crate) balance_result: Option<(u64, Result<f64, GpuError>)>,
 }
 
 impl Mailbox {
     /// Returns true if the window has left something that the render thread has not read.
-    pub(super) fn has_news(&self, is_frame_pending: bool) -> bool {
+    pub(super) fn has_changes(&self, is_frame_pending: bool) -> bool {
         let is_taken = is_frame_pending && self.frame.is_none();
         self.closed
             || self.scene.is_some()
@@ -97,7 +97,7 @@ impl Mailbox {
 
 /// Mailbox with the condition variables that signal changes to either side.
 #[derive(Default)]
-pub(crate) struct Shared {
+pub(crate) struct SharedMailbox {
     mailbox: Mutex<Mailbox>,
     /// Signalled after the window has put something into the mailbox or taken it out.
     pub(crate) changed: Condvar,
@@ -105,7 +105,7 @@ pub(crate) struct Shared {
     pub(crate) finished: Condvar,
 }
 
-impl Shared {
+impl SharedMailbox {
     pub(crate) fn mailbox(&self) -> MutexGuard<'_, Mailbox> {
         self.mailbox.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -4,15 +4,15 @@
 //! that fits the frame budget; the render worker carries it out.
 
 use crate::math::SceneSpace;
-use crate::model::{Engine, Kernel, Resolution, Settings, Slabs};
+use crate::model::{LightVolumeResolution, ReconstructionKernel, RenderEngine, Settings, SlabMode};
 use crate::plan::preview_slab;
 
 /// Time budget of a preview during interaction, in milliseconds: a frame at 30 Hz.
-const BUDGET_MS: f64 = 33.0;
+const PREVIEW_BUDGET_MS: f64 = 33.0;
 /// Time budget of a frame with a preview on a software adapter, in milliseconds; the window shares its processors.
 const SOFTWARE_BUDGET_MS: f64 = 66.0;
 /// Time that the window itself takes of each frame on a software adapter, in milliseconds.
-const SOFTWARE_WINDOW_MS: f64 = 26.0;
+const SOFTWARE_UI_MS: f64 = 26.0;
 /// Number of bands into which a picture is divided on a software adapter, where one may take seconds: between bands
 /// the render thread checks for new requests.
 const SOFTWARE_BANDS: u32 = 16;
@@ -25,16 +25,17 @@ pub(crate) struct QualityLevel {
     /// Window pixels per rendered pixel along each axis.
     pub scale: u32,
     /// Resolution of light volumes that are not filled yet; `None` for the full one.
-    pub coarse: Option<Resolution>,
+    pub light_resolution: Option<LightVolumeResolution>,
     /// True if the eye pass uses the prefiltered kernel.
-    pub quick_eye: bool,
+    pub prefiltered_eye: bool,
     /// True if the light pass uses the prefiltered kernel.
-    pub quick_light: bool,
+    pub prefiltered_light: bool,
 }
 
 impl QualityLevel {
     /// Full quality, as in exports.
-    pub(crate) const FULL: Self = Self { scale: 1, coarse: None, quick_eye: false, quick_light: false };
+    pub(crate) const FULL: Self =
+        Self { scale: 1, light_resolution: None, prefiltered_eye: false, prefiltered_light: false };
 
     /// Returns the number of pixels to render for a viewport, along each axis.
     pub(crate) fn size(self, viewport: [u32; 2]) -> [u32; 2] {
@@ -46,17 +47,17 @@ impl QualityLevel {
         let mut settings = look.clone();
         if self != Self::FULL {
             // The scattering engine is too slow during interaction.
-            settings.sampling.engine = Engine::Gather;
+            settings.sampling.engine = RenderEngine::Gather;
         }
-        if self.quick_eye {
-            settings.sampling.kernel = Kernel::Prefiltered;
+        if self.prefiltered_eye {
+            settings.sampling.kernel = ReconstructionKernel::Prefiltered;
             // Uniform slabs of that thickness would show stripes in thin parts.
-            let slab = settings.mean_slab();
-            settings.sampling.slabs = Slabs::Preintegrated;
+            let slab = settings.equivalent_even_slab();
+            settings.sampling.slabs = SlabMode::Preintegrated;
             settings.sampling.slab = preview_slab(&settings.camera, scene, self.size(viewport), slab);
         }
-        if self.quick_light {
-            settings.shadows.kernel = Kernel::Prefiltered;
+        if self.prefiltered_light {
+            settings.shadows.kernel = ReconstructionKernel::Prefiltered;
         }
         settings
     }
@@ -64,21 +65,21 @@ impl QualityLevel {
 
 /// Light volumes that a request needs and that are not filled yet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(crate) struct Missing {
+pub(crate) struct MissingLightVolumes {
     /// Number of volumes that must be filled.
     pub count: usize,
     /// True if other volumes can be used as they are.
-    pub others: bool,
+    pub has_usable: bool,
 }
 
 /// Running estimate of a duration; the first measurement replaces the guess.
 #[derive(Debug, Clone, Copy)]
-struct Estimate {
+struct DurationEstimate {
     ms: f64,
     measured: bool,
 }
 
-impl Estimate {
+impl DurationEstimate {
     const fn guess(ms: f64) -> Self {
         Self { ms, measured: false }
     }
@@ -102,19 +103,19 @@ pub(crate) struct QualityController {
     /// Time budget per frame that the user has set, in milliseconds.
     frame_ms: Option<f64>,
     /// Time to fill a light volume, in milliseconds: by resolution (full, half, quarter), then exact or quick kernel.
-    light_build: [[Estimate; 2]; 3],
+    light_build: [[DurationEstimate; 2]; 3],
     /// Milliseconds per pixel of whole pictures: exact or quick kernel, then scale. In small pictures neighbouring
     /// rays share fewer of their reads, so their pixels cost more.
-    eye_pixel: [[Estimate; 3]; 2],
+    eye_pixel: [[DurationEstimate; 3]; 2],
     /// True once a first picture was rendered, exact and quick: the first one's time includes compilation.
     warm: [bool; 2],
 }
 
-fn resolution_index(coarse: Option<Resolution>) -> usize {
-    match coarse.unwrap_or(Resolution::Full) {
-        Resolution::Full => 0,
-        Resolution::Half => 1,
-        Resolution::Quarter => 2,
+fn resolution_index(coarse: Option<LightVolumeResolution>) -> usize {
+    match coarse.unwrap_or(LightVolumeResolution::Full) {
+        LightVolumeResolution::Full => 0,
+        LightVolumeResolution::Half => 1,
+        LightVolumeResolution::Quarter => 2,
     }
 }
 
@@ -126,19 +127,19 @@ impl QualityController {
     /// Creates a controller with cautious guesses for an adapter.
     pub(crate) fn new(software: bool) -> Self {
         let slow = if software { 20.0 } else { 1.0 };
-        let build = |ms: f64| [Estimate::guess(ms * slow), Estimate::guess(ms * slow * 0.4)];
+        let build = |ms: f64| [DurationEstimate::guess(ms * slow), DurationEstimate::guess(ms * slow * 0.4)];
         Self {
             software,
             frame_ms: None,
             light_build: [build(400.0), build(60.0), build(10.0)],
             eye_pixel: [[1.0, 1.5, 2.3], [0.4, 0.6, 0.9]]
-                .map(|row| row.map(|ms| Estimate::guess(ms * slow * 2e-5))),
+                .map(|row| row.map(|ms| DurationEstimate::guess(ms * slow * 2e-5))),
             warm: [false; 2],
         }
     }
 
     /// Discards all estimates, after a change of volume.
-    pub(crate) fn forget(&mut self) {
+    pub(crate) fn reset(&mut self) {
         *self = Self { frame_ms: self.frame_ms, ..Self::new(self.software) };
     }
 
@@ -149,8 +150,8 @@ impl QualityController {
 
     /// Returns the time budget of a preview, in milliseconds.
     fn budget_ms(&self) -> f64 {
-        let usual = if self.software { SOFTWARE_BUDGET_MS } else { BUDGET_MS };
-        let window = if self.software { SOFTWARE_WINDOW_MS } else { 0.0 };
+        let usual = if self.software { SOFTWARE_BUDGET_MS } else { PREVIEW_BUDGET_MS };
+        let window = if self.software { SOFTWARE_UI_MS } else { 0.0 };
         (self.frame_ms.unwrap_or(usual) - window).max(1.0)
     }
 
@@ -161,7 +162,7 @@ impl QualityController {
     }
 
     /// Returns the number of rows per band for a picture of the given size.
-    pub(crate) fn rows(&self, quality: QualityLevel, [width, height]: [u32; 2]) -> u32 {
+    pub(crate) fn band_rows(&self, quality: QualityLevel, [width, height]: [u32; 2]) -> u32 {
         // Previews run to completion, so they need no bands.
         let whole = if self.software && quality == QualityLevel::FULL {
             height.div_ceil(SOFTWARE_BANDS)
@@ -173,7 +174,7 @@ impl QualityController {
 
     /// Learns the duration of the eye pass of a whole picture.
     pub(crate) fn learn_picture(&mut self, quality: QualityLevel, pixels: f64, ms: f64) {
-        let quick = usize::from(quality.quick_eye);
+        let quick = usize::from(quality.prefiltered_eye);
         let warm = std::mem::replace(&mut self.warm[quick], true);
         if !(warm && ms.is_finite() && pixels > 0.0) {
             return;
@@ -192,8 +193,8 @@ impl QualityController {
 
     /// Learns the total time to fill one light volume.
     pub(crate) fn learn_build(&mut self, quality: QualityLevel, ms: f64) {
-        let quick = usize::from(quality.quick_light);
-        let at = resolution_index(quality.coarse);
+        let quick = usize::from(quality.prefiltered_light);
+        let at = resolution_index(quality.light_resolution);
         self.light_build[at][quick].observe(ms.max(0.05));
         // Extrapolation to resolutions that were never tried: eight times the voxels take somewhat less than eight
         // times as long.
@@ -205,15 +206,15 @@ impl QualityController {
     }
 
     /// Chooses the quality level of a preview: the finest that keeps the frame budget.
-    pub(crate) fn preview(&self, viewport: [u32; 2], missing: Missing) -> QualityLevel {
+    pub(crate) fn preview_level(&self, viewport: [u32; 2], missing: MissingLightVolumes) -> QualityLevel {
         let budget = self.budget_ms();
         let pixels = f64::from(viewport[0]) * f64::from(viewport[1]);
-        let quick_light = self.software && missing.count > 0 && !missing.others;
+        let quick_light = self.software && missing.count > 0 && !missing.has_usable;
         let (mut coarse, mut light_ms) = (None, 0.0);
         if missing.count > 0 {
             // Up to two thirds of the frame are spent on moving lights.
             let room = budget * 0.66;
-            for choice in [None, Some(Resolution::Half), Some(Resolution::Quarter)] {
+            for choice in [None, Some(LightVolumeResolution::Half), Some(LightVolumeResolution::Quarter)] {
                 coarse = choice;
                 let quick = usize::from(quick_light && choice.is_some());
                 light_ms = self.light_build[resolution_index(choice)][quick].ms * missing.count as f64;
@@ -232,13 +233,14 @@ impl QualityController {
         let fits = |scale: u32| eye_ms(scale) + light_ms <= budget;
         let scale = [1, 2].into_iter().find(|&scale| fits(scale)).unwrap_or(4);
         // A cached light volume of full resolution may have been evicted: a coarse one is the fallback.
-        let fallback = if self.software { Resolution::Quarter } else { Resolution::Half };
+        let fallback =
+            if self.software { LightVolumeResolution::Quarter } else { LightVolumeResolution::Half };
         let quick_light = quick_light && coarse.is_some();
         QualityLevel {
             scale,
-            coarse: coarse.or((missing.count == 0).then_some(fallback)),
-            quick_eye,
-            quick_light,
+            light_resolution: coarse.or((missing.count == 0).then_some(fallback)),
+            prefiltered_eye: quick_eye,
+            prefiltered_light: quick_light,
         }
     }
 }
@@ -248,76 +250,85 @@ mod tests {
     use super::*;
 
     fn measured(software: bool, eye_ms_per_megapixel: f64, full_build_ms: f64) -> QualityController {
-        let mut refine = QualityController::new(software);
-        for quality in [QualityLevel::FULL, QualityLevel { quick_eye: true, ..QualityLevel::FULL }] {
-            let factor = if quality.quick_eye { 0.3 } else { 1.0 };
+        let mut controller = QualityController::new(software);
+        for quality in [QualityLevel::FULL, QualityLevel { prefiltered_eye: true, ..QualityLevel::FULL }] {
+            let factor = if quality.prefiltered_eye { 0.3 } else { 1.0 };
             for _ in 0..8 {
-                refine.learn_picture(quality, 1e6, eye_ms_per_megapixel * factor);
+                controller.learn_picture(quality, 1e6, eye_ms_per_megapixel * factor);
             }
         }
-        for (coarse, share) in
-            [(None, 1.0), (Some(Resolution::Half), 0.15), (Some(Resolution::Quarter), 0.03)]
-        {
-            refine.learn_build(QualityLevel { coarse, ..QualityLevel::FULL }, full_build_ms * share);
-            refine.learn_build(
-                QualityLevel { coarse, quick_light: true, ..QualityLevel::FULL },
+        for (coarse, share) in [
+            (None, 1.0),
+            (Some(LightVolumeResolution::Half), 0.15),
+            (Some(LightVolumeResolution::Quarter), 0.03),
+        ] {
+            controller.learn_build(
+                QualityLevel { light_resolution: coarse, ..QualityLevel::FULL },
+                full_build_ms * share,
+            );
+            controller.learn_build(
+                QualityLevel { light_resolution: coarse, prefiltered_light: true, ..QualityLevel::FULL },
                 full_build_ms * share * 0.4,
             );
         }
-        refine
+        controller
     }
 
-    const ONE: Missing = Missing { count: 1, others: false };
+    const ONE: MissingLightVolumes = MissingLightVolumes { count: 1, has_usable: false };
 
     #[test]
     fn quick_previews_have_preintegrated_slabs() {
         let scene = SceneSpace::new([64; 3], glam::DAffine3::IDENTITY);
         let look = Settings::default();
         let sampling = |quick_eye| {
-            let quality = QualityLevel { scale: 4, quick_eye, ..QualityLevel::FULL };
+            let quality = QualityLevel { scale: 4, prefiltered_eye: quick_eye, ..QualityLevel::FULL };
             quality.settings(&look, &scene, [940, 720]).sampling
         };
-        assert_eq!((sampling(true).slabs, sampling(true).slab), (Slabs::Preintegrated, 1.0));
+        assert_eq!((sampling(true).slabs, sampling(true).slab), (SlabMode::Preintegrated, 1.0));
         assert_eq!(sampling(false), look.sampling);
     }
 
     #[test]
     fn a_fast_card_previews_at_full_quality() {
         let refine = measured(false, 2.0, 5.0);
-        assert_eq!(refine.preview([1000, 1000], ONE), QualityLevel::FULL);
+        assert_eq!(refine.preview_level([1000, 1000], ONE), QualityLevel::FULL);
     }
 
     #[test]
     fn a_slow_one_goes_coarse_in_steps() {
         let refine = measured(false, 20.0, 60.0);
-        let still = refine.preview([1000, 1000], Missing::default());
-        assert_eq!((still.scale, still.quick_eye), (1, false));
-        let moving = refine.preview([1000, 1000], ONE);
-        assert_eq!(moving.coarse, Some(Resolution::Half));
+        let still = refine.preview_level([1000, 1000], MissingLightVolumes::default());
+        assert_eq!((still.scale, still.prefiltered_eye), (1, false));
+        let moving = refine.preview_level([1000, 1000], ONE);
+        assert_eq!(moving.light_resolution, Some(LightVolumeResolution::Half));
         let software = measured(true, 600.0, 1000.0);
-        let moving = software.preview([1000, 700], ONE);
-        assert_eq!(moving.coarse, Some(Resolution::Quarter));
-        assert!(moving.quick_eye && moving.quick_light && moving.scale >= 2, "{moving:?}");
+        let moving = software.preview_level([1000, 700], ONE);
+        assert_eq!(moving.light_resolution, Some(LightVolumeResolution::Quarter));
+        assert!(moving.prefiltered_eye && moving.prefiltered_light && moving.scale >= 2, "{moving:?}");
     }
 
     #[test]
     fn a_larger_budget_makes_sharper_previews() {
         let mut software = measured(true, 600.0, 1000.0);
-        let usual = software.preview([1000, 700], ONE);
+        let usual = software.preview_level([1000, 700], ONE);
         software.set_frame_ms(Some(400.0));
-        let sharp = software.preview([1000, 700], ONE);
+        let sharp = software.preview_level([1000, 700], ONE);
         assert!(sharp.scale < usual.scale, "{sharp:?}");
         software.set_frame_ms(Some(5.0));
-        assert_eq!(software.preview([1000, 700], ONE).scale, 4, "as little as there is");
+        assert_eq!(software.preview_level([1000, 700], ONE).scale, 4, "as little as there is");
         software.set_frame_ms(None);
-        assert_eq!(software.preview([1000, 700], ONE), usual);
+        assert_eq!(software.preview_level([1000, 700], ONE), usual);
     }
 
     #[test]
     fn a_usable_light_volume_keeps_its_kernel() {
         let software = measured(true, 600.0, 1000.0);
-        assert!(!software.preview([800, 600], Missing { count: 1, others: true }).quick_light);
-        assert!(!software.preview([800, 600], Missing::default()).quick_light);
+        assert!(
+            !software
+                .preview_level([800, 600], MissingLightVolumes { count: 1, has_usable: true })
+                .prefiltered_light
+        );
+        assert!(!software.preview_level([800, 600], MissingLightVolumes::default()).prefiltered_light);
     }
 
     #[test]
@@ -327,15 +338,19 @@ mod tests {
             refine.learn_picture(QualityLevel::FULL, 1e6, 200.0);
             refine.learn_build(QualityLevel::FULL, 500.0);
         }
-        let slow = refine.preview([1000, 1000], ONE);
-        assert!(slow.scale > 1 && slow.coarse.is_some(), "{slow:?}");
+        let slow = refine.preview_level([1000, 1000], ONE);
+        assert!(slow.scale > 1 && slow.light_resolution.is_some(), "{slow:?}");
         for _ in 0..20 {
             refine.learn_picture(QualityLevel::FULL, 1e6, 2.0);
             refine.learn_build(QualityLevel::FULL, 1.0);
         }
-        assert_eq!(refine.preview([1000, 1000], ONE), QualityLevel::FULL);
+        assert_eq!(refine.preview_level([1000, 1000], ONE), QualityLevel::FULL);
         refine.learn_picture(QualityLevel::FULL, 1e6, f64::INFINITY);
-        assert_eq!(refine.preview([1000, 1000], ONE), QualityLevel::FULL, "a lost device teaches nothing");
+        assert_eq!(
+            refine.preview_level([1000, 1000], ONE),
+            QualityLevel::FULL,
+            "a lost device teaches nothing"
+        );
     }
 
     #[test]
@@ -343,7 +358,7 @@ mod tests {
         for software in [false, true] {
             let refine = QualityController::new(software);
             for size in [[1, 1], [800, 600], [7680, 4320], [32768, 10]] {
-                let rows = refine.rows(QualityLevel::FULL, size);
+                let rows = refine.band_rows(QualityLevel::FULL, size);
                 assert!(rows >= 1 && (rows == 1 || rows * size[0] <= BAND_PIXELS), "{size:?}: {rows}");
             }
         }

@@ -8,20 +8,20 @@ use std::time::Duration;
 
 use eframe::egui;
 
-use super::mailbox::{Figures, Frame, Mailbox, Measurement, Shared};
+use super::background_task::panic_message;
+use super::mailbox::{BalanceRequest, FinishedFrame, Mailbox, RenderStatistics, SharedMailbox};
 use super::render_worker::RenderWorker;
-use super::request::{FrameRequest, Scene};
-use super::task::panic_message;
+use super::request::{FrameRequest, RenderScene};
 use crate::data::Dataset;
-use crate::gpu::{Context, GpuError};
+use crate::gpu::{GpuContext, GpuError};
 use crate::model::Settings;
 
 /// Handle to the render thread, which ends when the handle is dropped.
 pub(crate) struct RenderThread {
-    shared: Arc<Shared>,
+    shared: Arc<SharedMailbox>,
     thread: Option<JoinHandle<()>>,
     /// Number of balance measurements requested so far.
-    measurements: Cell<u64>,
+    balance_request_count: Cell<u64>,
 }
 
 impl std::fmt::Debug for RenderThread {
@@ -43,25 +43,25 @@ impl Drop for RenderThread {
 
 impl RenderThread {
     /// Starts the render thread.
-    pub(crate) fn start(context: Context, ctx: egui::Context) -> std::io::Result<Self> {
-        let shared = Arc::<Shared>::default();
-        let theirs = Arc::clone(&shared);
+    pub(crate) fn start(context: GpuContext, ctx: egui::Context) -> std::io::Result<Self> {
+        let shared = Arc::<SharedMailbox>::default();
+        let worker_shared = Arc::clone(&shared);
         let thread = std::thread::Builder::new().name("renderer".to_owned()).spawn(move || {
-            let mut worker = RenderWorker::new(&context, ctx, theirs);
+            let mut worker = RenderWorker::new(&context, ctx, worker_shared);
             // wgpu panics when a device is lost in the middle of a call.
-            if let Err(panic) = catch_unwind(AssertUnwindSafe(|| worker.work())) {
-                worker.report(GpuError::Lost(panic_message(&*panic)));
+            if let Err(panic) = catch_unwind(AssertUnwindSafe(|| worker.run())) {
+                worker.report(GpuError::DeviceLost(panic_message(&*panic)));
             }
         })?;
-        Ok(Self { shared, thread: Some(thread), measurements: Cell::new(0) })
+        Ok(Self { shared, thread: Some(thread), balance_request_count: Cell::new(0) })
     }
 
     /// Replaces the scene, and discards requests and results of the previous one.
-    pub(crate) fn set_scene(&self, scene: Scene) {
+    pub(crate) fn set_scene(&self, scene: RenderScene) {
         let mut mailbox = self.shared.mailbox();
         mailbox.dataset = None;
         (mailbox.scene, mailbox.frame_request, mailbox.frame) = (Some(scene), None, None);
-        (mailbox.measurement, mailbox.measured) = (None, None);
+        (mailbox.balance_request, mailbox.balance_result) = (None, None);
         self.shared.changed.notify_one();
     }
 
@@ -69,12 +69,12 @@ impl RenderThread {
     pub(crate) fn set_dataset(&self, dataset: Dataset) {
         let mut mailbox = self.shared.mailbox();
         (mailbox.dataset, mailbox.frame_request, mailbox.frame) = (Some(dataset), None, None);
-        (mailbox.measurement, mailbox.measured) = (None, None);
+        (mailbox.balance_request, mailbox.balance_result) = (None, None);
         self.shared.changed.notify_one();
     }
 
     /// Posts a request, which replaces the previous one.
-    pub(crate) fn set_request(&self, frame_request: FrameRequest) {
+    pub(crate) fn post_request(&self, frame_request: FrameRequest) {
         self.shared.mailbox().frame_request = Some(frame_request);
         self.shared.changed.notify_one();
     }
@@ -83,9 +83,9 @@ impl RenderThread {
     /// pending measurement. Returns the number of the measurement.
     pub(crate) fn measure_balance(&self, settings: &Settings) -> u64 {
         let mut mailbox = self.shared.mailbox();
-        self.measurements.set(self.measurements.get() + 1);
-        let id = self.measurements.get();
-        mailbox.measurement = Some(Measurement { id, settings: Box::new(settings.clone()) });
+        self.balance_request_count.set(self.balance_request_count.get() + 1);
+        let id = self.balance_request_count.get();
+        mailbox.balance_request = Some(BalanceRequest { id, settings: Box::new(settings.clone()) });
         self.shared.changed.notify_one();
         id
     }
@@ -101,7 +101,7 @@ impl RenderThread {
 
     /// Takes the result of a measurement; returns it only once.
     pub(crate) fn take_balance(&self, id: u64) -> Option<Result<f64, GpuError>> {
-        let measured = self.shared.mailbox().measured.take_if(|(measured, _)| *measured == id);
+        let measured = self.shared.mailbox().balance_result.take_if(|(measured, _)| *measured == id);
         measured.map(|(_, balance)| balance)
     }
 
@@ -112,8 +112,12 @@ impl RenderThread {
 
     /// Takes the latest finished picture. Waits for at most `longest_wait` until there is one, or one of the request
     /// `awaited`.
-    pub(crate) fn take_frame(&self, awaited: Option<&FrameRequest>, longest_wait: Duration) -> Option<Frame> {
-        let is_it = |frame: &Frame| awaited.is_none_or(|awaited| frame.request == *awaited);
+    pub(crate) fn take_frame(
+        &self,
+        awaited: Option<&FrameRequest>,
+        longest_wait: Duration,
+    ) -> Option<FinishedFrame> {
+        let is_it = |frame: &FinishedFrame| awaited.is_none_or(|awaited| frame.request == *awaited);
         let is_due =
             |mailbox: &mut Mailbox| mailbox.error.is_none() && !mailbox.frame.as_ref().is_some_and(is_it);
         let (mut mailbox, _) = self
@@ -134,7 +138,7 @@ impl RenderThread {
     }
 
     /// Returns a copy of the render thread's statistics.
-    pub(crate) fn figures(&self) -> Figures {
+    pub(crate) fn statistics(&self) -> RenderStatistics {
         self.shared.mailbox().figures.clone()
     }
 }

@@ -9,14 +9,14 @@ use crate::gpu::{GpuError, ShaderLibrary};
 /// Threads that compile pipelines in advance. Dropping this waits for them: a driver must not be unloaded while a
 /// thread executes in it.
 #[derive(Debug, Default)]
-pub(super) struct WarmUp {
+pub(super) struct PipelineWarmUp {
     stop: Arc<AtomicBool>,
     threads: Vec<JoinHandle<()>>,
 }
 
-impl WarmUp {
+impl PipelineWarmUp {
     /// Number of threads that were started.
-    pub(super) fn count(&self) -> usize {
+    pub(super) fn thread_count(&self) -> usize {
         self.threads.len()
     }
 
@@ -40,7 +40,7 @@ impl WarmUp {
     }
 }
 
-impl Drop for WarmUp {
+impl Drop for PipelineWarmUp {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::Relaxed);
         for thread in self.threads.drain(..) {

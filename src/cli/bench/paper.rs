@@ -2,12 +2,12 @@
 
 use serde_json::{Value, json};
 
-use super::Bench;
-use super::report::round;
+use super::VolumeBenchmark;
+use super::report::round_to_microsecond;
 use crate::cli::CliError;
-use crate::model::{Kernel, ShadowAlgorithm};
+use crate::model::{ReconstructionKernel, ShadowAlgorithm};
 
-impl Bench<'_> {
+impl VolumeBenchmark<'_> {
     /// Measures light volume and picture by each algorithm of P §5, and compares the ratios with the paper's for the
     /// lobster.
     pub(super) fn paper(
@@ -21,7 +21,7 @@ impl Bench<'_> {
             ("paper-3-splat", ShadowAlgorithm::Splat),
         ];
         // The same kernel for all three algorithms.
-        self.settings.shadows.kernel = Kernel::BSpline;
+        self.settings.shadows.kernel = ReconstructionKernel::BSpline;
         let mut took = Vec::new();
         for (name, algorithm) in algorithms {
             self.settings.shadows.algorithm = algorithm;
@@ -29,7 +29,7 @@ impl Bench<'_> {
             let samples = self.light_drag(&mut made)?;
             let mut case = made.swap_remove(0);
             case["name"] = json!(name);
-            case["light_volume_ms"] = json!(round(samples.light_build()));
+            case["light_volume_ms"] = json!(round_to_microsecond(samples.light_build()));
             cases.push(case);
             took.push((samples.light_build(), samples.eye()));
         }
@@ -45,7 +45,10 @@ impl Bench<'_> {
             ("picture_with_over_without_shadows", with.cost() / without.cost(), 1.0),
         ];
         for (name, found, paper) in rows {
-            ratios.insert(name.to_owned(), json!({ "measured": round(found), "paper": round(paper) }));
+            ratios.insert(
+                name.to_owned(),
+                json!({ "measured": round_to_microsecond(found), "paper": round_to_microsecond(paper) }),
+            );
         }
         Ok(())
     }

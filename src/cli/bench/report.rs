@@ -3,11 +3,11 @@
 use serde_json::{Value, json};
 
 use crate::cli::process::process_cpu_ms;
-use crate::gpu::Report;
+use crate::gpu::RenderReport;
 
 /// Timings of one benchmark case, one entry per frame.
 #[derive(Debug, Default)]
-pub(super) struct Samples {
+pub(super) struct CaseTimings {
     wall_ms: Vec<f64>,
     cpu_ms: Vec<f64>,
     eye_ms: Vec<f64>,
@@ -24,9 +24,9 @@ pub(super) struct Samples {
     rendered: ([u32; 2], usize),
 }
 
-impl Samples {
+impl CaseTimings {
     /// Runs one frame and records its timings.
-    pub(super) fn time<E>(&mut self, frame: impl FnOnce() -> Result<Report, E>) -> Result<(), E> {
+    pub(super) fn time<E>(&mut self, frame: impl FnOnce() -> Result<RenderReport, E>) -> Result<(), E> {
         let cpu = process_cpu_ms();
         let start = std::time::Instant::now();
         let report = frame()?;
@@ -40,7 +40,7 @@ impl Samples {
         self.light_raycast_ms.push(report.light_raycast_ms);
         self.sky_ms.push(report.sky_ms);
         self.bounces_ms.push(report.bounces_ms);
-        self.bricks_ms.push(report.bricks_ms);
+        self.bricks_ms.push(report.tables_ms);
         self.upload_ms.push(report.upload_ms);
         self.eye_gpu_ms.extend(report.eye_gpu_ms);
         self.light_gpu_ms.extend(report.light_gpu_ms);
@@ -81,7 +81,7 @@ impl Samples {
     }
 
     /// Returns true if the last frame had the given size and used no light volume coarser than the data.
-    pub(super) fn were_whole(&self, size: [u32; 2]) -> bool {
+    pub(super) fn is_full_resolution(&self, size: [u32; 2]) -> bool {
         self.rendered.0 == size && self.rendered.1 <= 1
     }
 
@@ -89,31 +89,31 @@ impl Samples {
     pub(super) fn json(&self) -> Value {
         json!({
             "frames": self.wall_ms.len(),
-            "wall_ms": spread(&self.wall_ms),
-            "cpu_ms": spread(&self.cpu_ms),
+            "wall_ms": spread_json(&self.wall_ms),
+            "cpu_ms": spread_json(&self.cpu_ms),
             "stages": {
-                "eye": round(median(&self.eye_ms)),
-                "light_march": round(median(&self.light_march_ms)),
-                "light_backproject": round(median(&self.light_backproject_ms)),
-                "light_raycast": round(median(&self.light_raycast_ms)),
-                "sky": round(median(&self.sky_ms)),
-                "bounces": round(median(&self.bounces_ms)),
-                "bricks": round(median(&self.bricks_ms)),
-                "upload": round(median(&self.upload_ms)),
+                "eye": round_to_microsecond(median(&self.eye_ms)),
+                "light_march": round_to_microsecond(median(&self.light_march_ms)),
+                "light_backproject": round_to_microsecond(median(&self.light_backproject_ms)),
+                "light_raycast": round_to_microsecond(median(&self.light_raycast_ms)),
+                "sky": round_to_microsecond(median(&self.sky_ms)),
+                "bounces": round_to_microsecond(median(&self.bounces_ms)),
+                "bricks": round_to_microsecond(median(&self.bricks_ms)),
+                "upload": round_to_microsecond(median(&self.upload_ms)),
             },
             // Measured by the adapter's timestamp queries.
-            "gpu_ms": { "eye": spread(&self.eye_gpu_ms), "light": spread(&self.light_gpu_ms) },
+            "gpu_ms": { "eye": spread_json(&self.eye_gpu_ms), "light": spread_json(&self.light_gpu_ms) },
         })
     }
 }
 
 /// Returns median, minimum and maximum as JSON; null for an empty slice.
-pub(super) fn spread(values: &[f64]) -> Value {
+pub(super) fn spread_json(values: &[f64]) -> Value {
     if values.is_empty() {
         return Value::Null;
     }
     let (min, max) = values.iter().fold((f64::INFINITY, 0f64), |(min, max), &v| (min.min(v), max.max(v)));
-    json!({ "median": round(median(values)), "min": round(min), "max": round(max) })
+    json!({ "median": round_to_microsecond(median(values)), "min": round_to_microsecond(min), "max": round_to_microsecond(max) })
 }
 
 /// Returns the median; 0 for an empty slice.
@@ -128,7 +128,7 @@ pub(super) fn median(values: &[f64]) -> f64 {
 }
 
 /// Rounds milliseconds to a microsecond.
-pub(super) fn round(ms: f64) -> f64 {
+pub(super) fn round_to_microsecond(ms: f64) -> f64 {
     (ms * 1000.0).round() / 1000.0
 }
 

@@ -2,36 +2,36 @@
 
 use serde_json::{Map, Value, json};
 
-use super::report::round;
-use super::{Bench, STEP_DEG};
+use super::report::round_to_microsecond;
+use super::{STEP_DEG, VolumeBenchmark};
 use crate::cli::CliError;
-use crate::model::{Resolution, Settings, SkyMode};
+use crate::model::{LightVolumeResolution, Settings, SkyMode};
 
 /// Configuration of the scattering volume that is timed.
-struct Build {
+struct ScatteringBuild {
     bounces: u32,
     directions: u32,
-    resolution: Resolution,
+    resolution: LightVolumeResolution,
     /// True if material and light are grey, so that one colour channel suffices.
     one_color: bool,
     /// Agreed upper bound of the time in units of one light, if there is one.
     bound: Option<f64>,
 }
 
-const fn build(bounces: u32, directions: u32, resolution: Resolution) -> Build {
-    Build { bounces, directions, resolution, one_color: false, bound: None }
+const fn build(bounces: u32, directions: u32, resolution: LightVolumeResolution) -> ScatteringBuild {
+    ScatteringBuild { bounces, directions, resolution, one_color: false, bound: None }
 }
 
-const BUILDS: [Build; 6] = [
-    build(3, 14, Resolution::Quarter),
-    Build { bound: Some(4.0), ..build(8, 14, Resolution::Quarter) },
-    Build { bound: Some(2.5), one_color: true, ..build(8, 14, Resolution::Quarter) },
-    build(4, 64, Resolution::Quarter),
-    build(8, 64, Resolution::Quarter),
-    build(4, 64, Resolution::Half),
+const BUILDS: [ScatteringBuild; 6] = [
+    build(3, 14, LightVolumeResolution::Quarter),
+    ScatteringBuild { bound: Some(4.0), ..build(8, 14, LightVolumeResolution::Quarter) },
+    ScatteringBuild { bound: Some(2.5), one_color: true, ..build(8, 14, LightVolumeResolution::Quarter) },
+    build(4, 64, LightVolumeResolution::Quarter),
+    build(8, 64, LightVolumeResolution::Quarter),
+    build(4, 64, LightVolumeResolution::Half),
 ];
 
-impl Build {
+impl ScatteringBuild {
     /// Returns a look that uses this configuration.
     fn look(&self, lit: &Settings) -> Settings {
         let Self { bounces, directions, resolution, one_color, bound: _ } = *self;
@@ -56,7 +56,7 @@ impl Build {
     }
 }
 
-impl Bench<'_> {
+impl VolumeBenchmark<'_> {
     /// Measures the filling of the scattering volume in units of B, the filling of one parallel light with the
     /// B-spline both ways, and an orbit with sky and scattering relative to one without. Frames alternate, so that
     /// other load on the machine slows all of them alike.
@@ -65,29 +65,29 @@ impl Bench<'_> {
         cases: &mut Vec<Value>,
         ratios: &mut Map<String, Value>,
     ) -> Result<(), CliError> {
-        let lit = self.under_one_light();
+        let lit = self.one_light_look();
         let looks = BUILDS.map(|build| build.look(&lit));
         // Lights stay unchanged, so that only scattering is timed.
         let denser = |settings: &mut Settings, scale: f64| settings.scattering.density_scale *= scale;
-        let (one_light, builds) = self.fillings(&lit, &looks, denser)?;
+        let (one_light, builds) = self.time_fills(&lit, &looks, denser)?;
         let unit = one_light.light_build();
-        ratios.insert("one_light_ms".to_owned(), json!(round(unit)));
+        ratios.insert("one_light_ms".to_owned(), json!(round_to_microsecond(unit)));
         for (build, samples) in BUILDS.iter().zip(&builds) {
-            let mut found = json!({ "measured": round(samples.bounces() / unit) });
+            let mut found = json!({ "measured": round_to_microsecond(samples.bounces() / unit) });
             if let Some(bound) = build.bound {
                 found["bound"] = json!(bound);
             }
             ratios.insert(build.name(), found);
         }
-        let mut everything = build(8, 14, Resolution::Quarter).look(&lit);
+        let mut everything = build(8, 14, LightVolumeResolution::Quarter).look(&lit);
         everything.sky.mode = SkyMode::Gradient;
         let pair = [lit.clone(), everything];
         let turned =
             |settings: &mut Settings, frame: usize| settings.camera.azimuth_deg += STEP_DEG * frame as f64;
-        let [without, with] = self.in_turn(&pair, turned)?;
+        let [without, with] = self.time_alternately(&pair, turned)?;
         ratios.insert(
             "orbit_with_everything_over_orbit".to_owned(),
-            json!(round(with.cost() / without.cost())),
+            json!(round_to_microsecond(with.cost() / without.cost())),
         );
         cases.push(self.case("orbit-one-light", &without, 0));
         cases.push(self.case("orbit-everything", &with, 0));

@@ -11,6 +11,6 @@ pub fn note_closed_output() {
 }
 
 /// Returns true if standard output was closed when the process started.
-pub(in crate::cli) fn is_output_closed() -> bool {
+pub(crate) fn is_output_closed() -> bool {
     IS_CLOSED.load(Ordering::Relaxed)
 }

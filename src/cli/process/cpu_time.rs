@@ -1,7 +1,7 @@
 //! CPU time of this process: on a shared machine it is more meaningful than wall-clock time.
 
 /// Returns the CPU time of all threads so far, in milliseconds; `None` if the system does not report it.
-pub(in crate::cli) fn process_cpu_ms() -> Option<f64> {
+pub(crate) fn process_cpu_ms() -> Option<f64> {
     // The first number of a thread's schedstat is its time on a CPU, in nanoseconds (Linux).
     let mut total = 0u64;
     for task in std::fs::read_dir("/proc/self/task").ok()? {

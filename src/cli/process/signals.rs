@@ -3,24 +3,24 @@
 #[cfg(unix)]
 use std::sync::Arc;
 
-use crate::export::remove_unfinished;
+use crate::export::remove_own_temporary_files;
 
 /// Base of the exit code that shells report for a process ended by a signal; the signal's number is added.
-const SIGNALLED: i32 = 128;
+const SIGNAL_EXIT_BASE: i32 = 128;
 
 /// Runs the last acts and ends the process without running destructors of threads that are still working.
-fn end(last_acts: &[fn()], signal: i32) -> ! {
+fn run_last_acts_and_exit(last_acts: &[fn()], signal: i32) -> ! {
     for act in last_acts {
         act();
     }
-    remove_unfinished();
-    leave(SIGNALLED + signal)
+    remove_own_temporary_files();
+    exit_now(SIGNAL_EXIT_BASE + signal)
 }
 
 /// Ends the process immediately: exit handlers of libraries, such as drivers that stop their threads, would crash
 /// while those threads are rendering.
 #[cfg(unix)]
-fn leave(code: i32) -> ! {
+fn exit_now(code: i32) -> ! {
     signal_hook::low_level::exit(code)
 }
 
@@ -35,14 +35,14 @@ fn leave(code: i32) -> ! {
 }
 
 /// Starts a thread that listens for termination signals and runs `last_acts` before the process ends.
-pub(in crate::cli) fn listen(last_acts: &'static [fn()]) {
-    if let Err(err) = start(last_acts) {
+pub(crate) fn listen_for_signals(last_acts: &'static [fn()]) {
+    if let Err(err) = spawn_listener(last_acts) {
         log::warn!("files that are being written will stay when this is interrupted: {err}");
     }
 }
 
 #[cfg(unix)]
-fn start(last_acts: &'static [fn()]) -> std::io::Result<()> {
+fn spawn_listener(last_acts: &'static [fn()]) -> std::io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
     use signal_hook::iterator::Signals;
 
@@ -56,7 +56,7 @@ fn start(last_acts: &'static [fn()]) -> std::io::Result<()> {
     let mut signals = Signals::new(heard)?;
     let listen = move || {
         if let Some(signal) = signals.forever().next() {
-            end(last_acts, signal);
+            run_last_acts_and_exit(last_acts, signal);
         }
     };
     std::thread::Builder::new().name("signals".to_owned()).spawn(listen).map(drop)
@@ -65,7 +65,7 @@ fn start(last_acts: &'static [fn()]) -> std::io::Result<()> {
 #[cfg(not(unix))]
 fn start(last_acts: &'static [fn()]) -> Result<(), ctrlc::Error> {
     // Signal number of Ctrl+C (SIGINT) on other systems.
-    ctrlc::set_handler(move || end(last_acts, 2))
+    ctrlc::set_handler(move || run_last_acts_and_exit(last_acts, 2))
 }
 
 /// Parses the mask of ignored signals from Linux's `/proc/self/status`: one bit per signal, bit 0 for signal 1.

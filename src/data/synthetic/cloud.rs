@@ -5,8 +5,8 @@
 
 use glam::DVec3;
 
-use super::super::attempt::{Attempt, LoadControl, LoadError};
-use super::Grid;
+use super::super::load_context::{LoadContext, LoadControl, LoadError};
+use super::UnitGrid;
 use super::noise::fractal;
 
 /// Maximum voxel value, where the cloud is densest.
@@ -24,7 +24,11 @@ const PUFFS: [([f64; 3], [f64; 3]); 7] = [
 ];
 
 /// Computes the voxels of the cloud, 0 … 220.
-pub(super) fn voxels(grid: Grid, attempt: Attempt<'_>, control: &LoadControl) -> Result<Vec<u8>, LoadError> {
+pub(super) fn voxels(
+    grid: UnitGrid,
+    attempt: LoadContext<'_>,
+    control: &LoadControl,
+) -> Result<Vec<u8>, LoadError> {
     grid.fill(attempt, control, |z, slice| {
         for (y, row) in slice.chunks_exact_mut(grid.n).enumerate() {
             for (x, voxel) in row.iter_mut().enumerate() {

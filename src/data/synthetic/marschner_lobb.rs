@@ -5,8 +5,8 @@
 
 use std::f64::consts::PI;
 
-use super::super::attempt::{Attempt, LoadControl, LoadError};
-use super::Grid;
+use super::super::load_context::{LoadContext, LoadControl, LoadError};
+use super::UnitGrid;
 
 /// Amplitude α of the ripple.
 const ALPHA: f64 = 0.25;
@@ -15,7 +15,11 @@ const ALPHA: f64 = 0.25;
 const F_M: f64 = 6.0;
 
 /// Computes ρ(p), in [0, 1], at the voxel centres of [-1, 1]³.
-pub(super) fn voxels(grid: Grid, attempt: Attempt<'_>, control: &LoadControl) -> Result<Vec<f32>, LoadError> {
+pub(super) fn voxels(
+    grid: UnitGrid,
+    attempt: LoadContext<'_>,
+    control: &LoadControl,
+) -> Result<Vec<f32>, LoadError> {
     let centres: Vec<f64> = (0..grid.n).map(|i| grid.centre(i)).collect();
     // The ripple depends only on x and y: one plane of it serves all slices.
     let radius = |x: f64, y: f64| (x * x + y * y).sqrt();

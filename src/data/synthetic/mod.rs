@@ -4,31 +4,33 @@
 //! for one resolution hold for the others. They are described in coordinates p in [-1, 1]³ with z up: p = 1 is 64 mm,
 //! and voxel i of n has its centre at (i + ½) / n · 2 − 1.
 
-mod block;
 mod chair;
 mod cloud;
+mod cube;
 mod marschner_lobb;
 mod noise;
-mod parts;
 mod shapes;
 mod sphere;
+mod voxelise;
 
 use std::path::Path;
 
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 
-use super::attempt::{Attempt, Choice, Extent, LoadControl, LoadError, Room, memory_budget_bytes};
+use super::load_context::{
+    GridExtent, LoadContext, LoadControl, LoadError, ReadContext, VolumeChoice, memory_budget_bytes,
+};
 use super::{Samples, Volume, VoxelType};
 
 /// Names of the built-in volumes.
-pub const NAMES: [&str; 5] = ["chair", "cloud", "sphere", "box", "marschner-lobb"];
+pub const BUILTIN_NAMES: [&str; 5] = ["chair", "cloud", "sphere", "box", "marschner-lobb"];
 
 /// Default number of voxels along each edge.
 pub const DEFAULT_SIZE: usize = 128;
 
 /// Opacity unit of built-in volumes, in mm: a voxel of the default size.
-pub(super) const UNIT_MM: f64 = 1.0;
+pub(super) const OPACITY_UNIT_MM: f64 = 1.0;
 
 /// Allowed numbers of voxels along each edge.
 const SIZES: std::ops::RangeInclusive<usize> = 8..=1024;
@@ -38,11 +40,11 @@ const EDGE_MM: f64 = 128.0;
 
 /// Cubic grid of `n` voxels along each axis, in coordinates p.
 #[derive(Debug, Clone, Copy)]
-struct Grid {
+struct UnitGrid {
     n: usize,
 }
 
-impl Grid {
+impl UnitGrid {
     /// Returns the edge of a voxel, in units of p.
     fn voxel_edge(self) -> f64 {
         2.0 / self.n as f64
@@ -64,14 +66,14 @@ impl Grid {
     /// Computes all voxels in parallel: `slice(z, values)` fills one z-slice, which begins as zeros.
     fn fill<T: Copy + Default + Send>(
         self,
-        attempt: Attempt<'_>,
+        attempt: LoadContext<'_>,
         control: &LoadControl,
         slice: impl Fn(usize, &mut [T]) + Sync,
     ) -> Result<Vec<T>, LoadError> {
         let mut values = Vec::new();
         let count = self.n.pow(3);
         if values.try_reserve_exact(count).is_err() {
-            return Err(attempt.limit("N", "the memory is not there", "choose fewer voxels"));
+            return Err(attempt.limit_error("N", "the memory is not there", "choose fewer voxels"));
         }
         values.resize(count, T::default());
         control.start((count * size_of::<T>()) as u64);
@@ -88,10 +90,10 @@ impl Grid {
 /// Makes the built-in volume `name` of `n`³ voxels, [`DEFAULT_SIZE`]³ by default.
 ///
 /// # Errors
-/// `BadInput` for a name that is not in [`NAMES`] or an `n` outside 8 … 1024; `Limit` when it would need more than
-/// three quarters of the free memory.
+/// `BadInput` for a name that is not in [`BUILTIN_NAMES`] or an `n` outside 8 … 1024; `Limit` when it would need more
+/// than three quarters of the free memory.
 pub fn builtin(name: &str, n: Option<usize>) -> Result<Volume, LoadError> {
-    builtin_within(name, n, memory_budget_bytes(), &Choice::default(), &LoadControl::new())
+    builtin_with_budget(name, n, memory_budget_bytes(), &VolumeChoice::default(), &LoadControl::new())
 }
 
 /// Makes a built-in volume as [`builtin`] does, with a memory budget in bytes that must also hold the chosen portion,
@@ -99,26 +101,26 @@ pub fn builtin(name: &str, n: Option<usize>) -> Result<Volume, LoadError> {
 ///
 /// # Errors
 /// Fails like [`builtin`]; also with `Cancelled`.
-pub(crate) fn builtin_within(
+pub(crate) fn builtin_with_budget(
     name: &str,
     n: Option<usize>,
     budget_bytes: u64,
-    choice: &Choice,
+    choice: &VolumeChoice,
     control: &LoadControl,
 ) -> Result<Volume, LoadError> {
     let source = format!("builtin:{name}");
-    let attempt = Attempt { what: "make the built-in volume", path: Path::new(&source) };
+    let attempt = LoadContext { operation: "make the built-in volume", path: Path::new(&source) };
     let n = n.unwrap_or(DEFAULT_SIZE);
-    if !NAMES.contains(&name) {
-        return Err(attempt.bad_input(
+    if !BUILTIN_NAMES.contains(&name) {
+        return Err(attempt.bad_input_error(
             "NAME",
             "there is no built-in volume of that name",
-            format!("choose one of {}", NAMES.join(", ")),
+            format!("choose one of {}", BUILTIN_NAMES.join(", ")),
         ));
     }
     if !SIZES.contains(&n) {
         let (least, most) = (SIZES.start(), SIZES.end());
-        return Err(attempt.bad_input(
+        return Err(attempt.bad_input_error(
             "N",
             format!("{least} to {most} voxels along an edge are possible, {n} were asked for"),
             format!("write it like builtin:{name}:{DEFAULT_SIZE}"),
@@ -127,14 +129,14 @@ pub(crate) fn builtin_within(
     control.check()?;
     let voxel_type = if name == "marschner-lobb" { VoxelType::F32 } else { VoxelType::U8 };
     // All voxels are made, even if only a portion of them is wanted.
-    let room = Room { budget_bytes, choice, control };
-    Extent::checked_whole(attempt, "N", [n as u64; 3], voxel_type, room)?;
-    let grid = Grid { n };
+    let room = ReadContext { budget_bytes, choice, control };
+    GridExtent::checked_whole(attempt, "N", [n as u64; 3], voxel_type, room)?;
+    let grid = UnitGrid { n };
     let samples = match name {
-        "chair" => Samples::U8(parts::voxelise(grid, &chair::parts(), attempt, control)?),
-        "sphere" => Samples::U8(parts::voxelise(grid, &sphere::parts(), attempt, control)?),
+        "chair" => Samples::U8(voxelise::voxelise(grid, &chair::parts(), attempt, control)?),
+        "sphere" => Samples::U8(voxelise::voxelise(grid, &sphere::parts(), attempt, control)?),
         "cloud" => Samples::U8(cloud::voxels(grid, attempt, control)?),
-        "box" => Samples::U8(block::voxels(grid, attempt, control)?),
+        "box" => Samples::U8(cube::voxels(grid, attempt, control)?),
         _ => Samples::F32(marschner_lobb::voxels(grid, attempt, control)?),
     };
     let spacing_mm = EDGE_MM / n as f64;
@@ -144,13 +146,15 @@ pub(crate) fn builtin_within(
     };
     Volume::new(name, [n; 3], world_from_index, samples)
         // The opacity unit is one voxel of the default size, so that the look is independent of the resolution.
-        .map(|volume| volume.with_unit_mm(UNIT_MM))
-        .map_err(|error| attempt.bad_input("data", error.to_string(), "choose another number of voxels"))
+        .map(|volume| volume.with_unit_mm(OPACITY_UNIT_MM))
+        .map_err(|error| {
+            attempt.bad_input_error("data", error.to_string(), "choose another number of voxels")
+        })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::attempt::LoadErrorKind;
+    use super::super::load_context::LoadErrorKind;
     use super::*;
 
     fn make(name: &str, n: usize) -> Volume {
@@ -164,7 +168,7 @@ mod tests {
 
     #[test]
     fn all_fill_the_same_cube() {
-        for name in NAMES {
+        for name in BUILTIN_NAMES {
             for n in [8, 30, 33] {
                 let volume = make(name, n);
                 assert_eq!((volume.name(), volume.dims()), (name, [n; 3]));
@@ -179,7 +183,7 @@ mod tests {
 
     #[test]
     fn resolution_changes_little() {
-        for name in NAMES {
+        for name in BUILTIN_NAMES {
             let (coarse, fine) = (mean(&make(name, 32)), mean(&make(name, 64)));
             assert!((coarse / fine - 1.0).abs() < 0.04, "{name}: {coarse} at 32, {fine} at 64");
         }
@@ -187,7 +191,7 @@ mod tests {
 
     #[test]
     fn the_same_call_gives_the_same_voxels() {
-        for name in NAMES {
+        for name in BUILTIN_NAMES {
             assert_eq!(make(name, 24).samples(), make(name, 24).samples(), "{name}");
         }
     }
@@ -208,7 +212,7 @@ mod tests {
 
     #[test]
     fn ranges_hold_the_centres() {
-        let grid = Grid { n: 8 };
+        let grid = UnitGrid { n: 8 };
         assert_eq!(grid.range(-2.0, 2.0), 0..8);
         assert_eq!(grid.range(grid.centre(2), grid.centre(5)), 2..6);
         assert_eq!(grid.range(0.01, 0.02), 4..4);
@@ -219,7 +223,7 @@ mod tests {
     #[test]
     fn unknown_names_and_sizes_are_refused() {
         let kind = |name, n, budget| {
-            builtin_within(name, n, budget, &Choice::default(), &LoadControl::new())
+            builtin_with_budget(name, n, budget, &VolumeChoice::default(), &LoadControl::new())
                 .map_err(|error| error.kind())
                 .map(drop)
         };

@@ -5,11 +5,11 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::math::Bounds;
+use crate::math::Aabb;
 
 /// Geometric shape in coordinates p.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Shape {
+pub(super) enum SdfShape {
     Sphere {
         centre: DVec3,
         radius: f64,
@@ -38,7 +38,7 @@ pub(super) enum Shape {
     },
 }
 
-impl Shape {
+impl SdfShape {
     /// Creates a rounded box aligned with the coordinate axes.
     pub(super) fn upright_box(centre: [f64; 3], half: [f64; 3], radius: f64) -> Self {
         Self::Box { centre: centre.into(), axes: DMat3::IDENTITY, half: half.into(), radius }
@@ -82,21 +82,21 @@ impl Shape {
     }
 
     /// Returns a bounding box of the shape.
-    pub(super) fn bounds(&self) -> Bounds {
+    pub(super) fn bounds(&self) -> Aabb {
         match *self {
-            Self::Sphere { centre, radius } => Bounds { min: centre - radius, max: centre + radius },
+            Self::Sphere { centre, radius } => Aabb { min: centre - radius, max: centre + radius },
             Self::Box { centre, axes, half, .. } => {
                 let reach =
                     axes.x_axis.abs() * half.x + axes.y_axis.abs() * half.y + axes.z_axis.abs() * half.z;
-                Bounds { min: centre - reach, max: centre + reach }
+                Aabb { min: centre - reach, max: centre + reach }
             }
             Self::Rod { from, to, radii: [at_from, at_to] } => {
-                Bounds { min: (from - at_from).min(to - at_to), max: (from + at_from).max(to + at_to) }
+                Aabb { min: (from - at_from).min(to - at_to), max: (from + at_from).max(to + at_to) }
             }
             Self::Board { centre, half, bow, crown, lean, .. } => {
                 let rise = half.z + crown.abs();
                 let reach = DVec3::new(half.x, half.y + bow.abs() + lean.abs() * rise, rise);
-                Bounds { min: centre - reach, max: centre + reach }
+                Aabb { min: centre - reach, max: centre + reach }
             }
         }
     }
@@ -115,19 +115,19 @@ mod tests {
     #[test]
     fn distances_are_right_where_they_are_easy() {
         let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} {b}");
-        let sphere = Shape::Sphere { centre: DVec3::X, radius: 0.5 };
+        let sphere = SdfShape::Sphere { centre: DVec3::X, radius: 0.5 };
         near(sphere.distance(DVec3::ZERO), 0.5);
-        let cube = Shape::upright_box([0.0; 3], [0.5; 3], 0.1);
+        let cube = SdfShape::upright_box([0.0; 3], [0.5; 3], 0.1);
         near(cube.distance(DVec3::X), 0.5);
         near(cube.distance(DVec3::ZERO), -0.5);
         near(cube.distance(DVec3::splat(0.5)), 0.1 * 3f64.sqrt() - 0.1);
-        let rod = Shape::rod([0.0; 3], [0.0, 0.0, 1.0], 0.25);
+        let rod = SdfShape::rod([0.0; 3], [0.0, 0.0, 1.0], 0.25);
         near(rod.distance(DVec3::new(1.0, 0.0, 0.5)), 0.75);
         near(rod.distance(DVec3::new(0.0, 0.0, 2.0)), 0.75);
-        let bar = Shape::bar(DVec3::ZERO, DVec3::Y, 0.2, 0.1, 0.0);
+        let bar = SdfShape::bar(DVec3::ZERO, DVec3::Y, 0.2, 0.1, 0.0);
         near(bar.distance(DVec3::new(0.5, 0.5, 0.0)), 0.3);
         near(bar.distance(DVec3::new(0.0, 0.5, 0.5)), 0.4);
-        let board = Shape::Board {
+        let board = SdfShape::Board {
             centre: DVec3::ZERO,
             half: DVec3::new(1.0, 0.1, 0.2),
             radius: 0.0,
@@ -141,8 +141,8 @@ mod tests {
 
     #[test]
     fn bounds_hold_the_inside() {
-        let lean = Shape::bar(DVec3::new(0.1, 0.2, -0.3), DVec3::new(0.2, 0.5, 0.4), 0.05, 0.02, 0.01);
-        let board = Shape::Board {
+        let lean = SdfShape::bar(DVec3::new(0.1, 0.2, -0.3), DVec3::new(0.2, 0.5, 0.4), 0.05, 0.02, 0.01);
+        let board = SdfShape::Board {
             centre: DVec3::new(0.0, 0.1, 0.2),
             half: DVec3::new(0.4, 0.03, 0.1),
             radius: 0.02,
@@ -150,7 +150,7 @@ mod tests {
             crown: 0.05,
             lean: 0.3,
         };
-        let rod = Shape::Rod { from: DVec3::ZERO, to: DVec3::splat(0.4), radii: [0.05, 0.1] };
+        let rod = SdfShape::Rod { from: DVec3::ZERO, to: DVec3::splat(0.4), radii: [0.05, 0.1] };
         for shape in [lean, board, rod] {
             let bounds = shape.bounds();
             for i in 0..40usize.pow(3) {

@@ -22,7 +22,7 @@ impl ValueRange {
     }
 
     /// Returns the range with these ends; `None` if it is empty or a single value.
-    pub fn spread(low: f64, high: f64) -> Option<Self> {
+    pub fn non_degenerate(low: f64, high: f64) -> Option<Self> {
         (low < high).then_some(Self { low, high })
     }
 
@@ -32,12 +32,12 @@ impl ValueRange {
     }
 
     /// Interpolates linearly between the lowest value (share 0) and the highest (share 1).
-    pub fn at(self, share: f64) -> f64 {
+    pub fn value_at(self, share: f64) -> f64 {
         self.low + self.span() * share
     }
 
-    /// Returns the share of the way from the lowest value to the highest; the inverse of [`Self::at`]. Nearly flat
-    /// ranges give huge shares, but finite ones.
+    /// Returns the share of the way from the lowest value to the highest; the inverse of [`Self::value_at`]. Nearly
+    /// flat ranges give huge shares, but finite ones.
     pub fn share_of(self, value: f64) -> f64 {
         (value - self.low) / self.span().max(1e-300)
     }
@@ -73,10 +73,10 @@ mod tests {
     #[test]
     fn shares_and_values_are_inverse() {
         let range = ValueRange::new(-1000.0, 3000.0);
-        assert_eq!((range.span(), range.at(0.25), range.share_of(0.0)), (4000.0, 0.0, 0.25));
+        assert_eq!((range.span(), range.value_at(0.25), range.share_of(0.0)), (4000.0, 0.0, 0.25));
         assert!(range.contains(-1000.0) && range.contains(3000.0) && !range.contains(3000.1));
         assert!(ValueRange::new(5.0, 5.0).share_of(6.0).is_finite());
-        assert_eq!(ValueRange::spread(5.0, 5.0), None);
-        assert_eq!(ValueRange::spread(5.0, 6.0), Some(ValueRange::new(5.0, 6.0)));
+        assert_eq!(ValueRange::non_degenerate(5.0, 5.0), None);
+        assert_eq!(ValueRange::non_degenerate(5.0, 6.0), Some(ValueRange::new(5.0, 6.0)));
     }
 }

@@ -1,7 +1,7 @@
 //! Samples: voxel values as stored in files, in any number type.
 
 use crate::data::ValueRange;
-use crate::data::interrupt::{Interrupt, PIECE};
+use crate::data::cancellation::{CancelToken, PIECE_VALUES};
 
 /// Number type of a voxel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,7 +33,7 @@ impl VoxelType {
     }
 
     /// Returns the smallest and the largest integer of the type; `None` for floating-point types.
-    const fn whole(self) -> Option<(i64, i64)> {
+    const fn integer_range(self) -> Option<(i64, i64)> {
         match self {
             Self::U8 => Some((0, u8::MAX as i64)),
             Self::I8 => Some((i8::MIN as i64, i8::MAX as i64)),
@@ -46,17 +46,17 @@ impl VoxelType {
     }
 
     /// Returns the smallest type that holds the values of both types exactly.
-    pub(in crate::data) fn with(self, other: Self) -> Self {
+    pub(crate) fn common_type(self, other: Self) -> Self {
         if self == other {
             return self;
         }
-        let (Some(one), Some(another)) = (self.whole(), other.whole()) else {
+        let (Some(one), Some(another)) = (self.integer_range(), other.integer_range()) else {
             // Integers of up to 16 bits are exact in F32.
             let is_exact = |of: Self| of == Self::F32 || (of != Self::F64 && of.bytes() <= 2);
             return if is_exact(self) && is_exact(other) { Self::F32 } else { Self::F64 };
         };
         let (low, high) = (one.0.min(another.0), one.1.max(another.1));
-        let holds = |of: &Self| of.whole().is_some_and(|(first, last)| first <= low && high <= last);
+        let holds = |of: &Self| of.integer_range().is_some_and(|(first, last)| first <= low && high <= last);
         Self::ALL.into_iter().find(holds).unwrap_or(Self::F64)
     }
 
@@ -105,12 +105,12 @@ macro_rules! with_samples {
     };
 }
 
-pub(in crate::data) use with_samples;
+pub(crate) use with_samples;
 
 /// Iterates over pieces of values until the task is cancelled.
-fn wanted<T>(values: &[T]) -> impl Iterator<Item = &[T]> {
-    let interrupt = Interrupt::here();
-    values.chunks(PIECE).take_while(move |_| !interrupt.is_due())
+fn chunks_until_cancelled<T>(values: &[T]) -> impl Iterator<Item = &[T]> {
+    let interrupt = CancelToken::current();
+    values.chunks(PIECE_VALUES).take_while(move |_| !interrupt.should_stop())
 }
 
 impl Samples {
@@ -149,7 +149,7 @@ impl Samples {
     }
 
     /// Gathers the values of the voxels at the given indices.
-    pub(in crate::data) fn picked(&self, voxels: &[usize]) -> Self {
+    pub(crate) fn gather(&self, voxels: &[usize]) -> Self {
         macro_rules! picked {
             ($($variant:ident),+) => {
                 match self {
@@ -161,7 +161,7 @@ impl Samples {
     }
 
     /// Converts the values to a type that holds them, reserving capacity for `count`; `None` if memory is short.
-    pub(in crate::data) fn in_type(&self, voxel_type: VoxelType, count: usize) -> Option<Self> {
+    pub(crate) fn converted_to(&self, voxel_type: VoxelType, count: usize) -> Option<Self> {
         macro_rules! in_type {
             ($($variant:ident),+) => {
                 match voxel_type {
@@ -180,7 +180,7 @@ impl Samples {
 
     /// Appends values, which must be in the range of this number type.
     #[expect(trivial_numeric_casts, reason = "one of the types is the same")]
-    pub(in crate::data) fn append(&mut self, more: &Self) {
+    pub(crate) fn append(&mut self, more: &Self) {
         with_samples!(self, values => {
             with_samples!(more, more => for &value in more {
                 values.push(value as _);
@@ -190,19 +190,19 @@ impl Samples {
 
     /// Returns the range of the finite values, and the number of voxels that are not finite; `None` if none is
     /// finite.
-    pub(in crate::data) fn finite_range(&self) -> Option<(ValueRange, usize)> {
-        self.range_without(f64::NAN)
+    pub(crate) fn finite_range(&self) -> Option<(ValueRange, usize)> {
+        self.finite_range_except(f64::NAN)
     }
 
     /// Returns the range of the finite values other than `left_out`, and the number of voxels that are not finite;
     /// `None` if there are no such values.
-    pub(in crate::data) fn range_without(&self, left_out: f64) -> Option<(ValueRange, usize)> {
+    pub(crate) fn finite_range_except(&self, left_out: f64) -> Option<(ValueRange, usize)> {
         #[expect(
             trivial_numeric_casts,
             clippy::unnecessary_cast,
             reason = "one of the eight types is f64 already"
         )]
-        let (low, high, non_finite) = with_samples!(self, values => wanted(values).flatten().fold(
+        let (low, high, non_finite) = with_samples!(self, values => chunks_until_cancelled(values).flatten().fold(
             (f64::INFINITY, f64::NEG_INFINITY, 0),
             |(low, high, non_finite), &value| {
                 let value = value as f64;
@@ -219,14 +219,14 @@ impl Samples {
     }
 
     /// Returns a 64-bit fingerprint of the values (FNV-1a over whole values: an identity, not a checksum).
-    pub(in crate::data) fn fingerprint(&self) -> u64 {
+    pub(crate) fn fingerprint(&self) -> u64 {
         const PRIME: u64 = 0x0000_0100_0000_01b3;
         #[expect(
             trivial_numeric_casts,
             clippy::unnecessary_cast,
             reason = "one of the eight types is f64 already"
         )]
-        let hash = with_samples!(self, values => wanted(values).flatten().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &value| {
+        let hash = with_samples!(self, values => chunks_until_cancelled(values).flatten().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &value| {
             (hash ^ (value as f64).to_bits()).wrapping_mul(PRIME)
         }));
         hash
@@ -250,9 +250,9 @@ mod tests {
             (I32, F32, F64),
             (F32, F64, F64),
         ] {
-            assert_eq!((one.with(other), other.with(one)), (both, both), "{one:?} {other:?}");
+            assert_eq!((one.common_type(other), other.common_type(one)), (both, both), "{one:?} {other:?}");
         }
-        let mut samples = Samples::U8(vec![1, 255]).in_type(I16, 4).unwrap();
+        let mut samples = Samples::U8(vec![1, 255]).converted_to(I16, 4).unwrap();
         samples.append(&Samples::I16(vec![-3, 7]));
         assert_eq!(samples, Samples::I16(vec![1, 255, -3, 7]));
     }

@@ -1,37 +1,37 @@
 //! Scalar volume on a regular grid, with its transform to world space and its values in data units.
 
+mod block_average;
 mod corrections;
+mod crop;
+mod density_mapping;
 mod error;
-mod in_file;
+mod file_grid;
 mod kind;
 mod label_set;
 mod missing;
-mod reduce;
-mod region;
-mod shown;
-mod thinned;
+mod subsample;
 
+pub(super) use block_average::BlockPartition;
+pub use block_average::block_counts;
 pub use corrections::{
-    AxisOrder, Corrections, Flips, Headings, Orientation, PaddingValue, SpacingUnit, ValueScale,
+    AnatomicalAxes, AxisOrder, Corrections, Flips, Orientation, PaddingValue, SpacingUnit, ValueScale,
 };
+pub use density_mapping::DensityMapping;
 pub use error::VolumeError;
-pub use kind::{DataKind, KindFound, KindName};
+pub use kind::{DataKind, DetectedKind, KindName};
 pub use label_set::{CountedLabel, LabelSet, MAX_CLASSES};
-pub use missing::Missing;
-pub(super) use reduce::Blocks;
-pub use reduce::reduced_dims;
-pub use shown::Shown;
+pub use missing::MissingVoxels;
 
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use self::corrections::Corrected;
-use self::in_file::InFile;
-use super::attempt::Held;
+use self::corrections::AppliedCorrections;
+use self::file_grid::FileGridMapping;
+use super::load_context::FileContents;
 use super::values::robust::quantile;
-use super::{Hints, Samples, ValueRange, ValueRanges};
+use super::{Samples, ValueMetadata, ValueRange, ValueRanges};
 use crate::math::SceneSpace;
 
 /// Identity of a volume together with its value ranges.
@@ -53,28 +53,28 @@ pub struct Volume {
     dims: [usize; 3],
     file_dims: [usize; 3],
     /// Position of the voxels in the grid of the file.
-    block: InFile,
+    file_grid: FileGridMapping,
     world_from_index: DAffine3,
     samples: Arc<Samples>,
     ranges: ValueRanges,
-    shown: Shown,
-    missing: Option<Arc<Missing>>,
+    density_mapping: DensityMapping,
+    missing: Option<Arc<MissingVoxels>>,
     non_finite_voxels: usize,
     padding_value: Option<f64>,
-    unit_mm: Option<f64>,
+    opacity_unit_mm: Option<f64>,
     is_anatomical: bool,
-    hints: Hints,
+    hints: ValueMetadata,
     length_unit: SpacingUnit,
     remarks: Vec<String>,
-    held: Arc<Held>,
-    looking_took: Duration,
+    contents: Arc<FileContents>,
+    analysis_time: Duration,
     /// Kind of data, detected on first use.
-    kind: OnceLock<KindFound>,
+    kind: OnceLock<DetectedKind>,
     /// Labels of the volume, counted on first use.
     labels: OnceLock<Option<Arc<LabelSet>>>,
     content_id: u64,
     /// Corrections by the user and the opened volume, if there are any.
-    corrected: Option<Arc<Corrected>>,
+    corrected: Option<Arc<AppliedCorrections>>,
 }
 
 impl Volume {
@@ -89,11 +89,11 @@ impl Volume {
         world_from_index: DAffine3,
         samples: Samples,
     ) -> Result<Self, VolumeError> {
-        Self::sharing(name.into(), dims, world_from_index, Arc::new(samples))
+        Self::from_shared_samples(name.into(), dims, world_from_index, Arc::new(samples))
     }
 
     /// Creates a volume as [`Self::new`] does, from voxels that other volumes may share.
-    fn sharing(
+    fn from_shared_samples(
         name: String,
         dims: [usize; 3],
         world_from_index: DAffine3,
@@ -118,7 +118,7 @@ impl Volume {
             let range = format!("from {:e} to {:e}", value_range.low, value_range.high);
             return Err(VolumeError::TooWide { range });
         }
-        let ranges = ValueRanges::of(&samples, value_range);
+        let ranges = ValueRanges::from_samples(&samples, value_range);
         let geometry =
             dims.iter().map(|&n| n as u64).chain(world_from_index.to_cols_array().map(f64::to_bits));
         let content_id = geometry.fold(samples.fingerprint(), |hash, word| {
@@ -128,21 +128,21 @@ impl Volume {
             name,
             dims,
             file_dims: dims,
-            block: InFile::default(),
+            file_grid: FileGridMapping::default(),
             world_from_index,
             samples,
             ranges,
-            shown: Shown::Range(ranges.robust),
+            density_mapping: DensityMapping::Range(ranges.robust),
             missing: None,
             non_finite_voxels,
             padding_value: None,
-            unit_mm: None,
+            opacity_unit_mm: None,
             is_anatomical: false,
-            hints: Hints::default(),
+            hints: ValueMetadata::default(),
             length_unit: SpacingUnit::Mm,
             remarks: Vec::new(),
-            held: Arc::default(),
-            looking_took: Duration::ZERO,
+            contents: Arc::default(),
+            analysis_time: Duration::ZERO,
             kind: OnceLock::new(),
             labels: OnceLock::new(),
             content_id,
@@ -155,17 +155,17 @@ impl Volume {
     /// one.
     #[must_use]
     pub fn with_unit_mm(self, unit_mm: f64) -> Self {
-        Self { unit_mm: Some(unit_mm), ..self }
+        Self { opacity_unit_mm: Some(unit_mm), ..self }
     }
 
     /// Returns the opacity unit in mm, see [`Self::with_unit_mm`].
-    pub fn unit_mm(&self) -> Option<f64> {
-        self.unit_mm
+    pub fn opacity_unit_mm(&self) -> Option<f64> {
+        self.opacity_unit_mm
     }
 
     /// Sets whether world space is right-anterior-superior, as the file states of a body.
     #[must_use]
-    pub(crate) fn with_anatomy(self, is_anatomical: bool) -> Self {
+    pub(crate) fn with_anatomical_axes(self, is_anatomical: bool) -> Self {
         Self { is_anatomical, ..self }
     }
 
@@ -176,12 +176,12 @@ impl Volume {
 
     /// Sets the metadata of the values.
     #[must_use]
-    pub fn with_hints(self, hints: Hints) -> Self {
+    pub fn with_metadata(self, hints: ValueMetadata) -> Self {
         Self { hints, kind: OnceLock::new(), ..self }
     }
 
     /// Returns the metadata of the values, as the file states it.
-    pub fn hints(&self) -> &Hints {
+    pub fn metadata(&self) -> &ValueMetadata {
         &self.hints
     }
 
@@ -210,49 +210,49 @@ impl Volume {
 
     /// Sets the inventory of the file.
     #[must_use]
-    pub(super) fn with_held(self, held: Held) -> Self {
-        Self { held: Arc::new(held), ..self }
+    pub(super) fn with_contents(self, held: FileContents) -> Self {
+        Self { contents: Arc::new(held), ..self }
     }
 
     /// Returns the inventory of the file: the other volumes that could be opened of it.
-    pub fn held(&self) -> &Held {
-        &self.held
+    pub fn contents(&self) -> &FileContents {
+        &self.contents
     }
 
     /// Sets the time taken to analyse the voxels after reading.
     #[must_use]
-    pub(super) fn with_looking_took(self, looking_took: Duration) -> Self {
-        Self { looking_took, ..self }
+    pub(super) fn with_analysis_time(self, looking_took: Duration) -> Self {
+        Self { analysis_time: looking_took, ..self }
     }
 
     /// Returns the time taken, when the file was read, for the voxels' ranges and hash: the part of loading that was
     /// neither reading nor decoding. Zero for volumes that come from no file.
-    pub fn looking_took(&self) -> Duration {
-        self.looking_took
+    pub fn analysis_time(&self) -> Duration {
+        self.analysis_time
     }
 
     /// Returns the kind of data; the first call detects it and blocks meanwhile.
-    pub fn kind(&self) -> &KindFound {
-        self.kind.get_or_init(|| KindFound::of(self))
+    pub fn kind(&self) -> &DetectedKind {
+        self.kind.get_or_init(|| DetectedKind::detect(self))
     }
 
     /// Returns true if values are labels, whose numbers have no mean.
-    pub(in crate::data) fn is_of_labels(&self) -> bool {
+    pub(crate) fn is_label_map(&self) -> bool {
         matches!(self.kind().kind, DataKind::LabelMap { .. })
     }
 
     /// Copies the metadata of the volume whose blocks this one's voxels represent.
     #[must_use]
-    pub(super) fn standing_for(self, whole: &Self) -> Self {
+    pub(super) fn with_metadata_of(self, whole: &Self) -> Self {
         Self {
             file_dims: whole.file_dims,
-            unit_mm: whole.unit_mm,
+            opacity_unit_mm: whole.opacity_unit_mm,
             is_anatomical: whole.is_anatomical,
             hints: whole.hints.clone(),
             length_unit: whole.length_unit,
             remarks: whole.remarks.clone(),
-            held: Arc::clone(&whole.held),
-            kind: whole.kind_of_parts(),
+            contents: Arc::clone(&whole.contents),
+            kind: whole.inherited_kind(),
             ..self
         }
     }
@@ -281,8 +281,8 @@ impl Volume {
         self.dims
     }
 
-    /// Returns the dimensions of the volume from which this one was made by block averages ([`Self::reduced`]) or
-    /// subsampling ([`Self::thinned`]); [`Self::dims`] if it is neither.
+    /// Returns the dimensions of the volume from which this one was made by block averages ([`Self::block_averaged`])
+    /// or subsampling ([`Self::subsampled`]); [`Self::dims`] if it is neither.
     pub fn file_dims(&self) -> [usize; 3] {
         self.file_dims
     }

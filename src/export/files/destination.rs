@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 
 /// Destination of an output. For standard output, the result is first written atomically to a temporary file.
 #[derive(Debug)]
-pub struct Destination {
+pub struct OutputDestination {
     path: PathBuf,
     folder: Option<tempfile::TempDir>,
 }
 
-impl Destination {
+impl OutputDestination {
     /// Creates a destination for a file name; `-` stands for standard output, with the format of an extension.
     ///
     /// # Errors
@@ -42,7 +42,7 @@ impl Destination {
     ///
     /// # Errors
     /// When the reader of standard output accepts no more data.
-    pub fn hand_over(self) -> std::io::Result<()> {
+    pub fn copy_to_stdout(self) -> std::io::Result<()> {
         if self.is_standard_output() {
             let mut out = std::io::stdout().lock();
             std::io::copy(&mut File::open(&self.path)?, &mut out)?;
@@ -58,11 +58,11 @@ mod tests {
 
     #[test]
     fn names_are_files_and_a_dash_is_none() {
-        let file = Destination::new(Path::new("a/b.png"), "png").unwrap();
+        let file = OutputDestination::new(Path::new("a/b.png"), "png").unwrap();
         assert_eq!((file.path(), file.folder()), (Path::new("a/b.png"), Some(Path::new("a"))));
         assert!(!file.is_standard_output());
-        file.hand_over().unwrap();
-        let out = Destination::new(Path::new("-"), "exr").unwrap();
+        file.copy_to_stdout().unwrap();
+        let out = OutputDestination::new(Path::new("-"), "exr").unwrap();
         assert!(out.is_standard_output() && out.folder().is_none());
         assert_eq!(out.path().extension().unwrap(), "exr");
         let folder = out.path().parent().unwrap().to_owned();

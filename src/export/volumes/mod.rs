@@ -3,26 +3,26 @@
 //! Voxels are reoriented and converted row by row while they are written, so that no copy of the volume is kept in
 //! memory.
 
+mod export_volume;
 mod metaimage;
 mod nifti;
 mod npy;
 mod nrrd;
-mod numbers;
-mod outgoing;
+mod number_conversion;
+mod reorientation;
 #[cfg(test)]
 mod tests;
 mod tiff;
-mod turn;
 mod vti;
 
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-pub use numbers::{ConvertError, NumberWish};
-pub use outgoing::Outgoing;
+pub use export_volume::ExportVolume;
+pub use number_conversion::{ConvertError, NumberRequest};
 
 use super::ExportError;
-use super::files::{place, temporary_beside};
+use super::files::{rename_into_place, temporary_file_for};
 use crate::data::{Volume, VoxelType};
 
 /// File format for exported volumes.
@@ -50,7 +50,7 @@ impl VolumeFormat {
         [Self::Nrrd, Self::MetaImage, Self::NiftiGzip, Self::Nifti, Self::Tiff, Self::Npy, Self::Vti];
 
     /// File name extensions, without the dot; the first one names the format.
-    pub const fn endings(self) -> &'static [&'static str] {
+    pub const fn extensions(self) -> &'static [&'static str] {
         match self {
             Self::Nrrd => &["nrrd"],
             Self::MetaImage => &["mha"],
@@ -63,10 +63,10 @@ impl VolumeFormat {
     }
 
     /// Returns the format that a file name's extension indicates.
-    pub fn of_path(path: &Path) -> Option<Self> {
+    pub fn from_path(path: &Path) -> Option<Self> {
         let name = path.file_name()?.to_string_lossy().to_lowercase();
         let has = |ending: &str| name.strip_suffix(ending).is_some_and(|rest| rest.ends_with('.'));
-        Self::ALL.into_iter().find(|format| format.endings().iter().any(|ending| has(ending)))
+        Self::ALL.into_iter().find(|format| format.extensions().iter().any(|ending| has(ending)))
     }
 
     /// Returns true if the format supports optional compression of the voxels.
@@ -75,10 +75,10 @@ impl VolumeFormat {
     }
 
     /// Lists the known metadata of a volume that the format cannot store.
-    pub fn lost(self, volume: &Outgoing<'_>) -> Vec<&'static str> {
+    pub fn unsupported_metadata(self, volume: &ExportVolume<'_>) -> Vec<&'static str> {
         let hints = volume.hints();
-        let straight = volume.has_distances_alone();
-        let is_known = !volume.has_unknown_scale() || volume.has_no_place();
+        let straight = volume.has_spacing_only();
+        let is_known = !volume.has_unknown_scale() || volume.has_unknown_geometry();
         let (scale, place) = match self {
             Self::Nrrd | Self::MetaImage => (true, true),
             // Without an anatomical orientation, only distances are stored.
@@ -104,7 +104,12 @@ impl VolumeFormat {
         known.into_iter().filter(|(is_kept, _)| !is_kept).map(|(_, what)| what).collect()
     }
 
-    fn write(self, out: &mut dyn Write, volume: &Outgoing<'_>, is_compressed: bool) -> std::io::Result<()> {
+    fn write(
+        self,
+        out: &mut dyn Write,
+        volume: &ExportVolume<'_>,
+        is_compressed: bool,
+    ) -> std::io::Result<()> {
         match self {
             Self::Nrrd => nrrd::write(out, volume, is_compressed),
             Self::MetaImage => metaimage::write(out, volume, is_compressed),
@@ -124,26 +129,26 @@ impl VolumeFormat {
 pub fn write_volume(
     path: &Path,
     format: VolumeFormat,
-    volume: &Outgoing<'_>,
+    volume: &ExportVolume<'_>,
     is_compressed: bool,
 ) -> Result<(), ExportError> {
-    let mut file = temporary_beside(path)?;
-    let failed = ExportError::writing(path);
+    let mut file = temporary_file_for(path)?;
+    let failed = ExportError::io_error_for(path);
     let mut out = BufWriter::new(&mut file);
     format.write(&mut out, volume, is_compressed).and_then(|()| out.flush()).map_err(&failed)?;
     drop(out);
-    place(file, path)
+    rename_into_place(file, path)
 }
 
 /// Returns the header of an attached NRRD of 32-bit floats in the same world space as a volume, including the empty
 /// line at its end; the voxels follow in little-endian order.
-pub fn nrrd_header_like(
+pub fn nrrd_header_in_space_of(
     volume: &Volume,
     content: &str,
     dims: [usize; 3],
     world_from_index: glam::DAffine3,
 ) -> String {
-    let header = nrrd::Header {
+    let header = nrrd::NrrdFileHeader {
         content,
         voxel_type: VoxelType::F32,
         dims,

@@ -4,17 +4,17 @@
 
 use std::io::{Result, Write};
 
-use super::outgoing::Outgoing;
+use super::export_volume::ExportVolume;
 use crate::data::VoxelType;
 
 /// Alignment of the voxels in bytes, as required by the format.
 const ALIGNMENT: usize = 64;
 
 /// Bytes before the header text: magic bytes, version, and the text's length.
-const BEFORE: usize = 10;
+const PREAMBLE_BYTES: usize = 10;
 
 /// Writes a volume as an array indexed by z, y, x.
-pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>) -> Result<()> {
+pub(super) fn write(out: &mut dyn Write, volume: &ExportVolume<'_>) -> Result<()> {
     let kind = match volume.voxel_type() {
         VoxelType::U8 => "|u1",
         VoxelType::I8 => "|i1",
@@ -28,7 +28,7 @@ pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>) -> Result<()> {
     let [nx, ny, nz] = volume.dims();
     let mut text = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({nz}, {ny}, {nx}), }}");
     // The text ends with a line feed.
-    let length = (BEFORE + text.len() + 1).next_multiple_of(ALIGNMENT) - BEFORE;
+    let length = (PREAMBLE_BYTES + text.len() + 1).next_multiple_of(ALIGNMENT) - PREAMBLE_BYTES;
     text.extend(std::iter::repeat_n(' ', length - 1 - text.len()));
     text.push('\n');
     out.write_all(b"\x93NUMPY\x01\x00")?;

@@ -11,12 +11,12 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use glam::{DAffine3, DVec3};
 
-use super::outgoing::Outgoing;
-use crate::data::{Hints, Meaning, VoxelType};
-use crate::model::made_by;
+use super::export_volume::ExportVolume;
+use crate::data::{ValueMeaning, ValueMetadata, VoxelType};
+use crate::model::provenance_mark;
 
 /// Contents of an NRRD header.
-pub(super) struct Header<'a> {
+pub(super) struct NrrdFileHeader<'a> {
     /// Name of the volume.
     pub(super) content: &'a str,
     pub(super) voxel_type: VoxelType,
@@ -29,7 +29,7 @@ pub(super) struct Header<'a> {
     pub(super) is_gzip: bool,
 }
 
-impl Header<'_> {
+impl NrrdFileHeader<'_> {
     /// Returns the header's lines, without the empty line at its end.
     pub(super) fn text(&self) -> String {
         let number = match self.voxel_type {
@@ -38,7 +38,7 @@ impl Header<'_> {
             whole => whole.name(),
         };
         let [nx, ny, nz] = self.dims;
-        let mut text = format!("NRRD0005\n# {}\n", made_by());
+        let mut text = format!("NRRD0005\n# {}\n", provenance_mark());
         let mut add = |field: &str, value: &str| {
             if !value.is_empty() {
                 text.push_str(field);
@@ -74,18 +74,18 @@ impl Header<'_> {
 }
 
 /// Writes a volume as NRRD.
-pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>, is_gzip: bool) -> Result<()> {
-    let header = Header {
+pub(super) fn write(out: &mut dyn Write, volume: &ExportVolume<'_>, is_gzip: bool) -> Result<()> {
+    let header = NrrdFileHeader {
         content: volume.name(),
         voxel_type: volume.voxel_type(),
         dims: volume.dims(),
-        world_from_index: (!volume.has_no_place()).then_some(volume.world_from_index()),
+        world_from_index: (!volume.has_unknown_geometry()).then_some(volume.world_from_index()),
         is_anatomical: volume.is_anatomical(),
         has_unknown_scale: volume.has_unknown_scale(),
         is_gzip,
     };
     out.write_all(header.text().as_bytes())?;
-    out.write_all(of_values(volume.hints(), volume.unit()).as_bytes())?;
+    out.write_all(value_metadata(volume.hints(), volume.unit()).as_bytes())?;
     out.write_all(b"\n")?;
     if !is_gzip {
         return volume.write_voxels(out);
@@ -96,7 +96,7 @@ pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>, is_gzip: bool) -
 }
 
 /// Returns the header's lines with metadata of the values.
-fn of_values(hints: &Hints, unit: Option<&str>) -> String {
+fn value_metadata(hints: &ValueMetadata, unit: Option<&str>) -> String {
     let mut text = String::new();
     let mut add = |line: std::fmt::Arguments<'_>| {
         // Writing to a string cannot fail.
@@ -123,7 +123,7 @@ fn of_values(hints: &Hints, unit: Option<&str>) -> String {
     if let Some(acquisition) = hints.acquisition() {
         add(format_args!("acquisition:={acquisition}"));
     }
-    if hints.meaning == Meaning::Labels {
+    if hints.meaning == ValueMeaning::Labels {
         // Key by which 3D Slicer recognises segmentations.
         add(format_args!("Segmentation_ContainedRepresentationNames:=Binary labelmap|"));
     }

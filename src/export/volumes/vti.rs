@@ -7,15 +7,15 @@ use std::io::{Result, Write};
 
 use glam::DVec3;
 
-use super::outgoing::Outgoing;
+use super::export_volume::ExportVolume;
 use crate::data::VoxelType;
-use crate::model::made_by;
+use crate::model::provenance_mark;
 
 /// Text before and after the comment with the program mark.
 const COMMENT: [&str; 2] = ["<?xml version=\"1.0\"?>\n<!-- ", " -->\n"];
 
 /// Writes a volume as VTK image data.
-pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>) -> Result<()> {
+pub(super) fn write(out: &mut dyn Write, volume: &ExportVolume<'_>) -> Result<()> {
     let [before, after] = COMMENT;
     let kind = match volume.voxel_type() {
         VoxelType::U8 => "UInt8",
@@ -29,15 +29,15 @@ pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>) -> Result<()> {
     };
     let [x, y, z] = volume.dims().map(|n| n - 1);
     let extent = format!("0 {x} 0 {y} 0 {z}");
-    let name = escaped(volume.name());
+    let name = escape_xml(volume.name());
     let head = format!(
         "{before}{}{after}<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" \
          header_type=\"UInt64\">\n<ImageData WholeExtent=\"{extent}\"{}>\n<Piece Extent=\"{extent}\">\n\
          <PointData Scalars=\"{name}\">\n\
          <DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"1\" format=\"appended\" offset=\"0\"/>\n\
          </PointData>\n<CellData/>\n</Piece>\n</ImageData>\n<AppendedData encoding=\"raw\">\n_",
-        made_by(),
-        place(volume),
+        provenance_mark(),
+        geometry_attributes(volume),
     );
     out.write_all(head.as_bytes())?;
     out.write_all(&volume.bytes().to_le_bytes())?;
@@ -46,8 +46,8 @@ pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>) -> Result<()> {
 }
 
 /// Returns the attributes for position, spacing and orientation; empty if they are unknown.
-fn place(volume: &Outgoing<'_>) -> String {
-    if volume.has_no_place() {
+fn geometry_attributes(volume: &ExportVolume<'_>) -> String {
+    if volume.has_unknown_geometry() {
         return String::new();
     }
     let words = |v: DVec3| format!("{} {} {}", v.x, v.y, v.z);
@@ -66,6 +66,6 @@ fn place(volume: &Outgoing<'_>) -> String {
 }
 
 /// Escapes text for an XML attribute.
-fn escaped(text: &str) -> String {
+fn escape_xml(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -4,10 +4,10 @@
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum GpuError {
     /// No adapter at all, or none with the features that rendering needs.
-    #[error("no usable graphics adapter: {why}; {help}")]
+    #[error("no usable graphics adapter: {reason}; {help}")]
     NoAdapter {
         /// Requirement that no adapter met.
-        why: String,
+        reason: String,
         /// Advice to the user.
         help: &'static str,
     },
@@ -26,7 +26,7 @@ pub enum GpuError {
     #[error(
         "{what} needs {needed_mebibytes} MiB of addresses and a limit of this process leaves {left_mebibytes}; `ulimit -v unlimited` helps"
     )]
-    FewAddresses {
+    AddressSpaceTooSmall {
         /// Component that needs the address space.
         what: String,
         /// Address space that it needs, in MiB.
@@ -51,8 +51,8 @@ pub enum GpuError {
     NothingDrawn(&'static str),
     /// Validation error: a bug of this program or of the driver.
     #[error("the graphics driver refused: {0}")]
-    Refused(String),
+    Rejected(String),
     /// The device is lost, after a driver update, sleep or a watchdog reset.
     #[error("the graphics device was lost ({0})")]
-    Lost(String),
+    DeviceLost(String),
 }

@@ -1,36 +1,36 @@
 //! Graphics device: its queue, limits and features, and its errors.
 
 mod adapters;
-mod addresses;
-pub(super) mod clock;
-mod complaints;
+mod address_space;
+mod device_errors;
 pub(super) mod error;
-mod formats;
+pub(super) mod gpu_clock;
+mod texture_formats;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-pub(crate) use self::addresses::check_room_for_drivers;
-pub(super) use self::addresses::{OF_THE_COMPILER, check_room};
-use self::clock::Clock;
-use self::complaints::Complaints;
-pub(super) use self::formats::pair_format;
+pub(crate) use self::address_space::check_driver_address_space;
+pub(super) use self::address_space::{COMPILER_ADDRESS_BYTES, check_address_space};
+use self::device_errors::DeviceErrors;
+use self::gpu_clock::GpuClock;
+pub(super) use self::texture_formats::pair_format;
 use super::GpuError;
-use crate::data::plain;
-use crate::fault::{self, Count, Fault};
+use crate::data::sanitised;
+use crate::fault::{self, FaultCounter, InjectedFault};
 
 /// Advice in the error message when there is no adapter.
 const ADAPTER_HELP: &str =
     "install a Vulkan driver (on Debian: mesa-vulkan-drivers, which also brings a software one)";
 
 /// Advice when a device was opened with fewer features than its adapter has, and too few.
-const OPENING_HELP: &str = "open the device with the features of chiaroscuro::gpu::device_descriptor";
+const DEVICE_HELP: &str = "open the device with the features of chiaroscuro::gpu::device_descriptor";
 
 /// Graphics device with its queue and the capabilities that the renderer depends on. Cheap to clone.
 #[derive(Debug, Clone)]
-pub struct Context {
+pub struct GpuContext {
     adapter: wgpu::Adapter,
     /// Device, which creates resources.
     pub device: wgpu::Device,
@@ -41,31 +41,31 @@ pub struct Context {
     /// Format of attenuation volumes, sheets and pyramid: 16-bit floats where they can be stored, else 32-bit.
     pub storage_format: wgpu::TextureFormat,
     /// `true` if light volumes can have one byte per voxel.
-    pub byte_volumes: bool,
+    pub has_byte_volumes: bool,
     /// `true` if 16-bit normalised textures are available for density.
-    pub unorm16: bool,
+    pub has_unorm16: bool,
     /// Errors that no error scope caught, kept until they are taken.
-    complaints: Complaints,
+    device_errors: DeviceErrors,
     /// Set when the device is lost.
-    lost: Arc<AtomicBool>,
+    is_lost: Arc<AtomicBool>,
 }
 
 /// Longest wait for submitted work before the device counts as lost. Parts of pictures are sized to take a tenth of a
 /// second; the slowest driver on a busy machine has needed ten seconds.
-const PATIENCE: Duration = Duration::from_mins(2);
+const DEVICE_TIMEOUT: Duration = Duration::from_mins(2);
 
 /// Number of textures and buffers requested so far, for fault injection.
-pub(crate) static ALLOCATIONS: Count = Count::new();
+pub(crate) static ALLOCATION_COUNT: FaultCounter = FaultCounter::new();
 
 /// Interval at which a waiting thread checks that the device is not lost.
-const LOOK_AGAIN: Duration = Duration::from_secs(2);
+const LOSS_CHECK_INTERVAL: Duration = Duration::from_secs(2);
 
 /// Optional features, requested where the adapter has them.
-const WANTED: wgpu::Features = wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES
+const OPTIONAL_FEATURES: wgpu::Features = wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES
     .union(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM)
     .union(wgpu::Features::FLOAT32_FILTERABLE)
     .union(wgpu::Features::PIPELINE_CACHE)
-    .union(Clock::FEATURES);
+    .union(GpuClock::FEATURES);
 
 /// Returns the descriptor for a device of this adapter.
 ///
@@ -74,22 +74,22 @@ const WANTED: wgpu::Features = wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_F
 pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
     wgpu::DeviceDescriptor {
         label: Some("chiaroscuro"),
-        required_features: adapter.features() & WANTED,
+        required_features: adapter.features() & OPTIONAL_FEATURES,
         required_limits: adapter.limits(),
         ..Default::default()
     }
 }
 
-impl Context {
+impl GpuContext {
     /// Opens a device without a window: on the adapter named by `WGPU_ADAPTER_NAME`, else on the fastest.
     ///
     /// # Errors
     /// Returns an error if there is no adapter, or if it cannot store the textures that the renderer needs.
     pub fn headless() -> Result<Self, GpuError> {
-        check_room_for_drivers()?;
-        let adapter = adapters::fastest()?;
+        check_driver_address_space()?;
+        let adapter = adapters::fastest_adapter()?;
         let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(&adapter)))
-            .map_err(|err| GpuError::NoAdapter { why: err.to_string(), help: ADAPTER_HELP })?;
+            .map_err(|err| GpuError::NoAdapter { reason: err.to_string(), help: ADAPTER_HELP })?;
         Self::new(&adapter, device, queue)
     }
 
@@ -117,42 +117,52 @@ impl Context {
             // Pyramids of volumes with missing voxels store presence as a second channel.
             .find(|&format| usable(format) && usable(pair_format(format)))
             .ok_or_else(|| GpuError::NoAdapter {
-                why: format!(
+                reason: format!(
                     "{} can neither store 16-bit nor filter 32-bit float volumes",
                     adapter.get_info().name
                 ),
                 // The adapter may have the feature even though the device was opened without it.
-                help: if features.contains(adapter.features() & WANTED) {
+                help: if features.contains(adapter.features() & OPTIONAL_FEATURES) {
                     ADAPTER_HELP
                 } else {
-                    OPENING_HELP
+                    DEVICE_HELP
                 },
             })?;
         let byte_volumes = usable(wgpu::TextureFormat::R8Unorm);
-        let complaints = Complaints::default();
+        let complaints = DeviceErrors::default();
         let for_errors = complaints.clone();
         device.on_uncaptured_error(Arc::new(move |err: wgpu::Error| {
             let err = match err {
                 wgpu::Error::OutOfMemory { .. } => {
                     GpuError::OutOfMemory { what: "a resource".to_owned(), mebibytes: 0 }
                 }
-                other => GpuError::Refused(other.to_string()),
+                other => GpuError::Rejected(other.to_string()),
             };
             log::error!("{err}");
-            for_errors.keep(err);
+            for_errors.store(err);
         }));
         let lost = Arc::new(AtomicBool::new(false));
         let (for_loss, flag) = (complaints.clone(), Arc::clone(&lost));
         device.set_device_lost_callback(move |reason, message| {
             flag.store(true, Ordering::Relaxed);
             let why = if message.is_empty() { format!("{reason:?}") } else { message };
-            let err = GpuError::Lost(why);
+            let err = GpuError::DeviceLost(why);
             log::error!("{err}");
-            for_loss.keep(err);
+            for_loss.store(err);
         });
         let unorm16 = features.contains(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM);
         let (adapter, info) = (adapter.clone(), adapter.get_info());
-        Ok(Self { adapter, device, queue, info, storage_format, byte_volumes, unorm16, complaints, lost })
+        Ok(Self {
+            adapter,
+            device,
+            queue,
+            info,
+            storage_format,
+            has_byte_volumes: byte_volumes,
+            has_unorm16: unorm16,
+            device_errors: complaints,
+            is_lost: lost,
+        })
     }
 
     /// Returns this context with 32-bit sheets, pyramid and light volumes, where the device can filter them: for
@@ -171,7 +181,7 @@ impl Context {
         let info = &self.info;
         let words = format!("{} · {:?} · {} {}", info.name, info.backend, info.driver, info.driver_info);
         // Names come from the driver and may contain any characters.
-        plain(words.trim(), 400)
+        sanitised(words.trim(), 400)
     }
 
     /// Opens another device on the same adapter, for work beside a window: long work on the window's queue would
@@ -179,19 +189,19 @@ impl Context {
     ///
     /// # Errors
     /// Returns an error if the adapter provides no second device.
-    pub fn sibling(&self) -> Result<Self, GpuError> {
+    pub fn second_device(&self) -> Result<Self, GpuError> {
         // Mesa's software driver signals a fence of one device only after the work of all devices of that instance is
         // done: every wait would last a frame of the window longer. An instance of its own avoids that.
-        let adapter = if self.is_software() { self.same_adapter_elsewhere() } else { None };
+        let adapter = if self.is_software() { self.adapter_of_new_instance() } else { None };
         let adapter = adapter.as_ref().unwrap_or(&self.adapter);
         let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(adapter)))
-            .map_err(|err| GpuError::NoAdapter { why: err.to_string(), help: ADAPTER_HELP })?;
+            .map_err(|err| GpuError::NoAdapter { reason: err.to_string(), help: ADAPTER_HELP })?;
         let sibling = Self::new(adapter, device, queue)?;
         Ok(Self { storage_format: self.storage_format, ..sibling })
     }
 
     /// Returns this adapter as enumerated by a new instance, if it is found there.
-    fn same_adapter_elsewhere(&self) -> Option<wgpu::Adapter> {
+    fn adapter_of_new_instance(&self) -> Option<wgpu::Adapter> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
             backends: self.info.backend.into(),
             ..wgpu::InstanceDescriptor::new_without_display_handle_from_env()
@@ -208,31 +218,34 @@ impl Context {
     /// Waits until all submitted work is done, and reports the errors of this thread's work since the last call.
     ///
     /// # Errors
-    /// Returns the device's error; [`GpuError::Lost`] also where the adapter has not answered for two minutes.
+    /// Returns the device's error; [`GpuError::DeviceLost`] also where the adapter has not answered for two minutes.
     pub fn wait(&self) -> Result<(), GpuError> {
         let begin = Instant::now();
-        std::thread::sleep(fault::slowness());
+        std::thread::sleep(fault::adapter_delay());
         loop {
-            match self.poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(LOOK_AGAIN) }) {
-                Err(wgpu::PollError::Timeout) if self.lost.load(Ordering::Relaxed) => {}
-                Err(wgpu::PollError::Timeout) if begin.elapsed() > PATIENCE => {
-                    self.lost.store(true, Ordering::Relaxed);
-                    let why = format!("{} has not answered for {} s", self.info.name, PATIENCE.as_secs());
-                    return Err(GpuError::Lost(why));
+            match self
+                .poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(LOSS_CHECK_INTERVAL) })
+            {
+                Err(wgpu::PollError::Timeout) if self.is_lost.load(Ordering::Relaxed) => {}
+                Err(wgpu::PollError::Timeout) if begin.elapsed() > DEVICE_TIMEOUT => {
+                    self.is_lost.store(true, Ordering::Relaxed);
+                    let why =
+                        format!("{} has not answered for {} s", self.info.name, DEVICE_TIMEOUT.as_secs());
+                    return Err(GpuError::DeviceLost(why));
                 }
                 Err(wgpu::PollError::Timeout) => continue,
-                Err(err) => return Err(GpuError::Refused(err.to_string())),
+                Err(err) => return Err(GpuError::Rejected(err.to_string())),
                 Ok(_) => {}
             }
             self.check()?;
-            return if self.lost.load(Ordering::Relaxed) { Err(self.gone()) } else { Ok(()) };
+            return if self.is_lost.load(Ordering::Relaxed) { Err(self.lost_error()) } else { Ok(()) };
         }
     }
 
     /// Polls the device. wgpu panics if it finds the device lost; the panic is caught and recorded as a loss.
     fn poll(&self, how: wgpu::PollType) -> Result<wgpu::PollStatus, wgpu::PollError> {
         catch_unwind(AssertUnwindSafe(|| self.device.poll(how))).unwrap_or_else(|_| {
-            self.lost.store(true, Ordering::Relaxed);
+            self.is_lost.store(true, Ordering::Relaxed);
             Ok(wgpu::PollStatus::QueueEmpty)
         })
     }
@@ -240,28 +253,28 @@ impl Context {
     /// Returns true if the device is lost for good: after a driver update, sleep, or removal of the card. To be
     /// checked before each use of the device, which might panic otherwise.
     pub fn is_lost(&self) -> bool {
-        if !self.lost.load(Ordering::Relaxed) {
+        if !self.is_lost.load(Ordering::Relaxed) {
             self.poll(wgpu::PollType::Poll).ok();
         }
-        self.lost.load(Ordering::Relaxed)
+        self.is_lost.load(Ordering::Relaxed)
     }
 
     /// Destroys the device, for fault injection.
     #[cfg(feature = "window")]
-    pub(crate) fn lose(&self) {
+    pub(crate) fn destroy_device(&self) {
         self.device.destroy();
     }
 
     /// Returns true if the device is already known to be lost. Does not poll, unlike [`Self::is_lost`], and so never
     /// blocks a thread that is waiting for the device.
     #[cfg(feature = "window")]
-    pub(crate) fn was_lost(&self) -> bool {
-        self.lost.load(Ordering::Relaxed)
+    pub(crate) fn is_known_lost(&self) -> bool {
+        self.is_lost.load(Ordering::Relaxed)
     }
 
     /// Builds the error for a lost device.
-    fn gone(&self) -> GpuError {
-        GpuError::Lost(self.info.name.clone())
+    fn lost_error(&self) -> GpuError {
+        GpuError::DeviceLost(self.info.name.clone())
     }
 
     /// Reports the first error of this thread's work since the last call.
@@ -269,11 +282,13 @@ impl Context {
     /// # Errors
     /// Returns the device's error.
     pub fn check(&self) -> Result<(), GpuError> {
-        let complaint = self.complaints.take();
+        let complaint = self.device_errors.take();
         // Errors of a lost device are meaningless: every resource on it is invalid.
-        let is_lost = self.lost.load(Ordering::Relaxed);
+        let is_lost = self.is_lost.load(Ordering::Relaxed);
         match complaint {
-            Some(complaint) if is_lost && !matches!(complaint, GpuError::Lost(_)) => Err(self.gone()),
+            Some(complaint) if is_lost && !matches!(complaint, GpuError::DeviceLost(_)) => {
+                Err(self.lost_error())
+            }
             Some(complaint) => Err(complaint),
             None => Ok(()),
         }
@@ -304,7 +319,7 @@ impl Context {
         }
         let texels = u64::from(width) * u64::from(height) * u64::from(depth_or_array_layers);
         let bytes = texels * u64::from(descriptor.format.block_copy_size(None).unwrap_or(16));
-        if fault::is_due(&ALLOCATIONS, Fault::OutOfMemory) {
+        if fault::is_due(&ALLOCATION_COUNT, InjectedFault::OutOfMemory) {
             return Err(GpuError::OutOfMemory { what, mebibytes: bytes >> 20 });
         }
         let scope = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
@@ -324,7 +339,7 @@ impl Context {
     ) -> wgpu::Buffer {
         let bytes: &[u8] = bytemuck::cast_slice(contents);
         let aligned = (bytes.len() as u64).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
-        let buffer = self.empty_buffer(&wgpu::BufferDescriptor {
+        let buffer = self.uninitialised_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
             size: aligned.max(wgpu::COPY_BUFFER_ALIGNMENT),
             usage: usage | wgpu::BufferUsages::COPY_DST,
@@ -343,13 +358,13 @@ impl Context {
 
     /// Creates an uninitialised buffer. If memory is exhausted, the returned buffer is invalid, commands with it have
     /// no effect, and [`Self::check`] reports the error.
-    pub(crate) fn empty_buffer(&self, descriptor: &wgpu::BufferDescriptor<'_>) -> wgpu::Buffer {
-        let is_refused = fault::is_due(&ALLOCATIONS, Fault::OutOfMemory);
+    pub(crate) fn uninitialised_buffer(&self, descriptor: &wgpu::BufferDescriptor<'_>) -> wgpu::Buffer {
+        let is_refused = fault::is_due(&ALLOCATION_COUNT, InjectedFault::OutOfMemory);
         let scope = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let buffer = self.device.create_buffer(descriptor);
         if pollster::block_on(scope.pop()).is_some() || is_refused {
             let what = descriptor.label.unwrap_or("a buffer").to_owned();
-            self.complaints.keep(GpuError::OutOfMemory { what, mebibytes: descriptor.size >> 20 });
+            self.device_errors.store(GpuError::OutOfMemory { what, mebibytes: descriptor.size >> 20 });
         }
         if is_refused {
             // Simulates a failed allocation: commands that use the buffer fail, too.

@@ -1,10 +1,10 @@
 //! Brightness of a first look: the balance of lights, which compensates for shadows, and the exposure.
 
-use super::measures::{exposure_for, mean_luminance};
+use super::image_statistics::{automatic_exposure, mean_luminance};
 use crate::data::Dataset;
 use crate::gpu::{GpuError, RenderOptions, Renderer};
-use crate::model::auto::{self, Wishes};
-use crate::model::{Engine, SceneAxis, Settings, ShadowAlgorithm};
+use crate::model::first_look::{self, FirstLookOptions};
+use crate::model::{RenderEngine, SceneAxis, Settings, ShadowAlgorithm};
 
 /// Size of the pictures from which brightness is measured, in pixels: means over some thousand of them.
 pub(super) const MEASURED_SIZE: [u32; 2] = [160, 120];
@@ -12,7 +12,7 @@ pub(super) const MEASURED_SIZE: [u32; 2] = [160, 120];
 /// Range of the balance; results outside it are due to the settings, not to shadows.
 const BALANCE_RANGE: (f64, f64) = (0.1, 20.0);
 
-/// Returns the automatic settings of a volume, without the slower steps ([`super::finish_look`]).
+/// Returns the automatic settings of a volume, without the slower steps ([`super::complete_first_look`]).
 ///
 /// Lights are balanced so that shadows do not darken the picture, and the picture is exposed. Uploads the volume and
 /// fills the light volumes.
@@ -23,7 +23,7 @@ pub fn first_look(renderer: &mut Renderer, dataset: &Dataset) -> Result<Settings
     first_look_upright(renderer, dataset, SceneAxis::default())
 }
 
-/// Returns the automatic settings like [`first_look`], with the axis `up` of the scene pointing up, unless the file
+/// Returns the automatic settings like [`first_look()`], with the axis `up` of the scene pointing up, unless the file
 /// of the volume gives an orientation.
 ///
 /// # Errors
@@ -33,11 +33,11 @@ pub fn first_look_upright(
     dataset: &Dataset,
     up: SceneAxis,
 ) -> Result<Settings, GpuError> {
-    let wishes = Wishes { up, ..Wishes::default() };
-    let mut settings = auto::first_settings_with(dataset.volume(), dataset.histogram(), wishes);
-    let seen = SmallPictures::of(renderer, dataset, &settings)?;
-    settings.shadows.balance = seen.balance();
-    settings.output.exposure = exposure_for(&seen.balanced(settings.shadows.balance));
+    let wishes = FirstLookOptions { up, ..FirstLookOptions::default() };
+    let mut settings = first_look::first_settings_with(dataset.volume(), dataset.histogram(), wishes);
+    let pictures = BrightnessPictures::draw(renderer, dataset, &settings)?;
+    settings.shadows.balance = pictures.balance();
+    settings.output.exposure = automatic_exposure(&pictures.with_balance(settings.shadows.balance));
     settings.sanitise();
     Ok(settings)
 }
@@ -46,27 +46,31 @@ pub fn first_look_upright(
 ///
 /// # Errors
 /// Returns an error if the device fails or memory is exhausted.
-pub fn balance(renderer: &mut Renderer, dataset: &Dataset, settings: &Settings) -> Result<f64, GpuError> {
-    Ok(SmallPictures::of(renderer, dataset, settings)?.balance())
-}
-
-/// Returns the factor of [`balance`], measured with the fastest shadow algorithm and engine, on which brightness
-/// hardly depends.
-///
-/// # Errors
-/// Returns an error if the device fails or memory is exhausted.
-pub fn balance_quickly(
+pub fn measure_balance(
     renderer: &mut Renderer,
     dataset: &Dataset,
     settings: &Settings,
 ) -> Result<f64, GpuError> {
-    balance(renderer, dataset, &with_quick_shadows(settings))
+    Ok(BrightnessPictures::draw(renderer, dataset, settings)?.balance())
+}
+
+/// Returns the factor of [`measure_balance`], measured with the fastest shadow algorithm and engine, on which
+/// brightness hardly depends.
+///
+/// # Errors
+/// Returns an error if the device fails or memory is exhausted.
+pub fn measure_balance_fast(
+    renderer: &mut Renderer,
+    dataset: &Dataset,
+    settings: &Settings,
+) -> Result<f64, GpuError> {
+    measure_balance(renderer, dataset, &with_fast_shadows(settings))
 }
 
 /// Returns the settings with light volumes for shadows, and with the gathering engine.
-pub(super) fn with_quick_shadows(settings: &Settings) -> Settings {
+pub(super) fn with_fast_shadows(settings: &Settings) -> Settings {
     let mut measured = settings.clone();
-    measured.sampling.engine = Engine::Gather;
+    measured.sampling.engine = RenderEngine::Gather;
     if !measured.shadows.algorithm.has_volume() {
         measured.shadows.algorithm = ShadowAlgorithm::Splat;
     }
@@ -74,32 +78,32 @@ pub(super) fn with_quick_shadows(settings: &Settings) -> Settings {
 }
 
 /// Linear light of three small pictures, from which the parts of the light follow.
-pub(super) struct SmallPictures {
+pub(super) struct BrightnessPictures {
     /// Picture with shadows and a balance of 1.
-    with: Vec<[f32; 4]>,
+    shadowed: Vec<[f32; 4]>,
     /// Picture without shadows.
-    pub(super) without: Vec<[f32; 4]>,
+    pub(super) unshadowed: Vec<[f32; 4]>,
     /// Picture without lights.
     pub(super) unlit: Vec<[f32; 4]>,
 }
 
-impl SmallPictures {
+impl BrightnessPictures {
     /// Draws the three pictures of a volume with these settings.
-    pub(super) fn of(
+    pub(super) fn draw(
         renderer: &mut Renderer,
         dataset: &Dataset,
         settings: &Settings,
     ) -> Result<Self, GpuError> {
-        let mut dark = settings.clone();
-        (dark.shading.diffuse, dark.shading.specular) = (0.0, 0.0);
+        let mut unlit_settings = settings.clone();
+        (unlit_settings.shading.diffuse, unlit_settings.shading.specular) = (0.0, 0.0);
         // Lights without colour do not contribute scattered light, either.
-        dark.lights.iter_mut().for_each(|light| light.color = [0.0; 3]);
-        let unlit = small_picture(renderer, dataset, &dark)?;
-        Self::before(renderer, dataset, settings, unlit)
+        unlit_settings.lights.iter_mut().for_each(|light| light.color = [0.0; 3]);
+        let unlit = draw_small_picture(renderer, dataset, &unlit_settings)?;
+        Self::draw_lit(renderer, dataset, settings, unlit)
     }
 
     /// Draws the pictures with and without shadows; `unlit` is the known picture without lights.
-    pub(super) fn before(
+    pub(super) fn draw_lit(
         renderer: &mut Renderer,
         dataset: &Dataset,
         settings: &Settings,
@@ -108,9 +112,9 @@ impl SmallPictures {
         let mut shadowed = settings.clone();
         shadowed.shadows.balance = 1.0;
         let unshadowed = without_shadows(&shadowed);
-        let with = small_picture(renderer, dataset, &shadowed)?;
-        let without = small_picture(renderer, dataset, &unshadowed)?;
-        Ok(Self { with, without, unlit })
+        let with = draw_small_picture(renderer, dataset, &shadowed)?;
+        let without = draw_small_picture(renderer, dataset, &unshadowed)?;
+        Ok(Self { shadowed: with, unshadowed: without, unlit })
     }
 
     /// Returns the factor for lights that makes the picture with shadows as bright as without. Mean linear luminance
@@ -118,15 +122,15 @@ impl SmallPictures {
     /// share.
     pub(super) fn balance(&self) -> f64 {
         let [with, without, unlit] =
-            [&self.with, &self.without, &self.unlit].map(|light| mean_luminance(light));
+            [&self.shadowed, &self.unshadowed, &self.unlit].map(|light| mean_luminance(light));
         let factor = (without - unlit) / (with - unlit);
         if factor.is_finite() { factor.clamp(BALANCE_RANGE.0, BALANCE_RANGE.1) } else { 1.0 }
     }
 
     /// Returns the picture with shadows and a balance.
-    pub(super) fn balanced(&self, balance: f64) -> Vec<[f32; 4]> {
+    pub(super) fn with_balance(&self, balance: f64) -> Vec<[f32; 4]> {
         let factor = balance as f32;
-        let texels = self.with.iter().zip(&self.unlit);
+        let texels = self.shadowed.iter().zip(&self.unlit);
         texels
             .map(|(with, unlit)| {
                 std::array::from_fn(
@@ -154,7 +158,7 @@ fn without_shadows(settings: &Settings) -> Settings {
 
 /// Returns the linear light of a small picture without the floor. Drawn as a preview, so that it can reuse the light
 /// volumes of larger pictures.
-fn small_picture(
+fn draw_small_picture(
     renderer: &mut Renderer,
     dataset: &Dataset,
     settings: &Settings,

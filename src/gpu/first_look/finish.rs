@@ -1,15 +1,15 @@
 //! Completion of a first look: light search, floor, balance and exposure.
 
-use super::balance::{SmallPictures, with_quick_shadows};
-use super::light_search::{Found, LightSearch, Sought};
-use super::measures::exposure_for;
+use super::balance::{BrightnessPictures, with_fast_shadows};
+use super::image_statistics::automatic_exposure;
+use super::light_search::{LightSearch, LightSearchResult, SearchedLight};
 use crate::data::Dataset;
 use crate::gpu::{GpuError, Renderer};
 use crate::model::Settings;
 
 /// Part of the settings that is still to be chosen automatically.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Open {
+pub enum UndecidedPart {
     /// Positions of the lights.
     Lights,
     /// Presence of a floor, chosen together with the lights.
@@ -24,30 +24,30 @@ pub enum Open {
 ///
 /// # Errors
 /// Returns an error if the device fails or memory is exhausted.
-pub fn finish_look(
+pub fn complete_first_look(
     renderer: &mut Renderer,
     dataset: &Dataset,
     settings: &Settings,
-    open: &[Open],
+    open: &[UndecidedPart],
 ) -> Result<Settings, GpuError> {
     let mut look = settings.clone();
-    if open.contains(&Open::Lights)
-        && let Some(found) = seek(renderer, dataset, settings)?
+    if open.contains(&UndecidedPart::Lights)
+        && let Some(found) = search_lights(renderer, dataset, settings)?
     {
         let found = found.apply(settings);
         look.lights = found.lights;
-        if open.contains(&Open::Floor) {
+        if open.contains(&UndecidedPart::Floor) {
             look.floor = found.floor;
         }
     }
-    if open.contains(&Open::Balance) || open.contains(&Open::Exposure) {
+    if open.contains(&UndecidedPart::Balance) || open.contains(&UndecidedPart::Exposure) {
         // Measured with shadows even if they are off: pictures with and without are equally bright.
-        let seen = SmallPictures::of(renderer, dataset, &with_quick_shadows(&look))?;
-        if open.contains(&Open::Balance) {
+        let seen = BrightnessPictures::draw(renderer, dataset, &with_fast_shadows(&look))?;
+        if open.contains(&UndecidedPart::Balance) {
             look.shadows.balance = seen.balance();
         }
-        if open.contains(&Open::Exposure) {
-            look.output.exposure = exposure_for(&seen.balanced(look.shadows.balance));
+        if open.contains(&UndecidedPart::Exposure) {
+            look.output.exposure = automatic_exposure(&seen.with_balance(look.shadows.balance));
         }
     }
     look.sanitise();
@@ -56,8 +56,12 @@ pub fn finish_look(
 
 /// Searches for lights; `None` if nothing is visible, or if memory for the search is exhausted, which need not
 /// prevent the picture.
-fn seek(renderer: &Renderer, dataset: &Dataset, settings: &Settings) -> Result<Option<Found>, GpuError> {
-    let search = LightSearch::new(renderer.shaders(), dataset, settings, Sought::KeyAndFill);
+fn search_lights(
+    renderer: &Renderer,
+    dataset: &Dataset,
+    settings: &Settings,
+) -> Result<Option<LightSearchResult>, GpuError> {
+    let search = LightSearch::new(renderer.shaders(), dataset, settings, SearchedLight::KeyAndFill);
     match search.and_then(LightSearch::run) {
         Err(err @ (GpuError::OutOfMemory { .. } | GpuError::OverLimit { .. })) => {
             log::warn!("no light was sought: {err}");

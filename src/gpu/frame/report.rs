@@ -1,25 +1,25 @@
 //! Results of the renderer: picture, times and counts.
 
-use super::step::Stage;
+use super::step::RenderStage;
 
 /// Finished picture in host memory.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Picture {
+pub struct RenderedPicture {
     /// Number of pixels per row and column.
     pub size: [u32; 2],
     /// Linear, premultiplied RGBA before tone mapping, row by row from the top left.
-    pub light: Vec<[f32; 4]>,
+    pub linear: Vec<[f32; 4]>,
     /// Displayed picture: RGBA in sRGB bytes.
-    pub shown: Vec<u8>,
+    pub display: Vec<u8>,
 }
 
 /// Times and counts of one picture.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Report {
+pub struct RenderReport {
     /// Time of the upload, the pyramid and pre-classification, in milliseconds.
     pub upload_ms: f64,
     /// Time of the transfer tables and brick sets, in milliseconds.
-    pub bricks_ms: f64,
+    pub tables_ms: f64,
     /// Time of the light march, in milliseconds.
     pub light_march_ms: f64,
     /// Time of the back-projection of light, in milliseconds.
@@ -47,12 +47,12 @@ pub struct Report {
     /// Peak size of all textures and buffers so far, in bytes.
     pub peak_gpu_bytes: u64,
     /// Number of steps computed: those that a change made stale, and no others.
-    pub runs: Runs,
+    pub step_counts: StepCounts,
 }
 
 /// Number of steps of each kind that a picture took.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Runs {
+pub struct StepCounts {
     /// Number of blocks of the volume that were uploaded or prefiltered.
     pub volume: u32,
     /// Number of blocks of voxels, or of coarser levels, that were classified.
@@ -75,18 +75,18 @@ pub struct Runs {
     pub display: u32,
 }
 
-impl Report {
+impl RenderReport {
     /// Adds the wall time and the GPU time of a step.
-    pub(crate) fn add(&mut self, stage: Stage, took_ms: f64, gpu_ms: Option<f64>) {
+    pub(crate) fn add(&mut self, stage: RenderStage, took_ms: f64, gpu_ms: Option<f64>) {
         let (sum, gpu_sum) = match stage {
-            Stage::Upload | Stage::Pyramid => (&mut self.upload_ms, None),
-            Stage::LightMarch => (&mut self.light_march_ms, Some(&mut self.light_gpu_ms)),
-            Stage::LightBackproject => (&mut self.light_backproject_ms, Some(&mut self.light_gpu_ms)),
-            Stage::LightRaycast => (&mut self.light_raycast_ms, Some(&mut self.light_gpu_ms)),
-            Stage::Sky => (&mut self.sky_ms, Some(&mut self.light_gpu_ms)),
-            Stage::Bounces => (&mut self.bounces_ms, Some(&mut self.light_gpu_ms)),
-            Stage::Eye => (&mut self.eye_ms, Some(&mut self.eye_gpu_ms)),
-            Stage::Display => (&mut self.readback_ms, None),
+            RenderStage::Upload | RenderStage::Pyramid => (&mut self.upload_ms, None),
+            RenderStage::LightMarch => (&mut self.light_march_ms, Some(&mut self.light_gpu_ms)),
+            RenderStage::LightBackproject => (&mut self.light_backproject_ms, Some(&mut self.light_gpu_ms)),
+            RenderStage::LightRaycast => (&mut self.light_raycast_ms, Some(&mut self.light_gpu_ms)),
+            RenderStage::Sky => (&mut self.sky_ms, Some(&mut self.light_gpu_ms)),
+            RenderStage::ScatteredLight => (&mut self.bounces_ms, Some(&mut self.light_gpu_ms)),
+            RenderStage::Eye => (&mut self.eye_ms, Some(&mut self.eye_gpu_ms)),
+            RenderStage::Display => (&mut self.readback_ms, None),
         };
         *sum += took_ms;
         if let (Some(sum), Some(gpu_ms)) = (gpu_sum, gpu_ms) {

@@ -3,14 +3,14 @@
 use std::collections::VecDeque;
 use std::ops::Range;
 
-use crate::gpu::bounces::steps::BounceStep;
 use crate::gpu::eye::floor;
-use crate::gpu::resources::part::Part;
-use crate::gpu::volume::transfer_tables::{Table, Tables};
+use crate::gpu::resources::work_part::WorkPart;
+use crate::gpu::scattered_light::steps::ScatteringStep;
+use crate::gpu::volume::transfer_tables::{TransferTable, TransferTables};
 
 /// Stage of the picture that a step belongs to, for reports and for the status bar.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stage {
+pub enum RenderStage {
     /// Upload of density to the GPU.
     Upload,
     /// Pyramid of prefiltered density.
@@ -24,7 +24,7 @@ pub enum Stage {
     /// Computation of sky visibility.
     Sky,
     /// Computation of scattered light.
-    Bounces,
+    ScatteredLight,
     /// Linear picture and floor.
     Eye,
     /// Display colours of the picture.
@@ -33,7 +33,7 @@ pub enum Stage {
 
 /// Step of the march or back-projection of a light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct LightStep {
+pub(crate) struct LightStep {
     /// Index of the light build.
     pub build: usize,
     /// Index of the light's colour, if colours are followed separately.
@@ -43,12 +43,12 @@ pub(super) struct LightStep {
     /// Index of the chunk's first slab.
     pub begin: u32,
     /// Part of the chunk's tiles or bricks.
-    pub part: Part,
+    pub part: WorkPart,
 }
 
 /// Step that casts rays from the voxels of some bricks to a light.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct RaycastStep {
+pub(crate) struct RaycastStep {
     /// Index of the light build.
     pub build: usize,
     /// Index of the light's colour, if colours are followed separately.
@@ -61,14 +61,14 @@ pub(super) struct RaycastStep {
 
 /// Transfer function: of the eye or of light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Side {
+pub(crate) enum TransferSelector {
     Eye,
     Lighting,
 }
 
-impl Side {
+impl TransferSelector {
     /// Returns the table of this transfer function.
-    pub(super) fn of(self, tables: &Tables) -> &Table {
+    pub(super) fn table(self, tables: &TransferTables) -> &TransferTable {
         match self {
             Self::Eye => &tables.eye,
             Self::Lighting => &tables.lighting,
@@ -78,26 +78,26 @@ impl Side {
 
 /// Product that a picture needs and that is cached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Product {
+pub(crate) enum FrameProduct {
     Volume,
     /// Pre-classified voxels of a table.
-    Materials(Side),
+    Materials(TransferSelector),
     /// Light volume of the build with this index.
     Light(usize),
     CombinedLight,
     /// Volume of sky visibility.
     Sky,
     /// Volume of scattered light.
-    Bounces,
+    ScatteredLight,
     /// Linear light of the volume.
     Picture,
     Floor,
-    Shown,
+    Display,
 }
 
 /// Unit of work for one submission.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Step {
+pub(crate) enum RenderStep {
     /// Uploads slices of the volume.
     Upload(Range<usize>),
     /// Uploads slices of the coarsest level of the presence texture, with those of the finer levels.
@@ -107,7 +107,7 @@ pub(super) enum Step {
     /// Computes gradients in bricks of one pyramid level.
     Gradients(u32, Range<usize>),
     /// Classifies voxels by a table, in bricks of one pyramid level.
-    Materials(Side, u32, Range<usize>),
+    Materials(TransferSelector, u32, Range<usize>),
     March(LightStep),
     Backproject(LightStep),
     Raycast(RaycastStep),
@@ -118,7 +118,7 @@ pub(super) enum Step {
         point: usize,
     },
     /// Merges the volumes of red, green and blue light: index of the light build.
-    JoinColors(usize),
+    MergeColors(usize),
     /// Fills bricks of the combined light volume.
     Combine(Range<usize>),
     /// Computes the blocks of extinction for sky visibility.
@@ -126,7 +126,7 @@ pub(super) enum Step {
     /// Sweeps a batch of directions for sky visibility.
     SkyBatch(usize),
     /// Runs a step of filling a scattered-light volume.
-    Bounce(BounceStep),
+    ScatteredLight(ScatteringStep),
     /// Draws rows of the picture.
     Eye(Range<u32>),
     /// Draws slabs of the eye's scattered sheets.
@@ -135,36 +135,38 @@ pub(super) enum Step {
     Floor(Range<u32>),
     Display,
     /// Marks a product whose steps have all been recorded as complete; records no commands.
-    Finish(Product),
+    Finish(FrameProduct),
 }
 
-impl Step {
+impl RenderStep {
     /// Returns the stage for reports; `None` for steps without commands.
-    pub(super) fn stage(&self) -> Option<Stage> {
+    pub(super) fn stage(&self) -> Option<RenderStage> {
         Some(match self {
-            Self::Upload(_) | Self::Presence(_) => Stage::Upload,
-            Self::Pyramid(..) | Self::Gradients(..) | Self::Materials(..) => Stage::Pyramid,
-            Self::March(..) => Stage::LightMarch,
-            Self::Backproject(..) | Self::Average { .. } | Self::JoinColors(_) | Self::Combine(_) => {
-                Stage::LightBackproject
+            Self::Upload(_) | Self::Presence(_) => RenderStage::Upload,
+            Self::Pyramid(..) | Self::Gradients(..) | Self::Materials(..) => RenderStage::Pyramid,
+            Self::March(..) => RenderStage::LightMarch,
+            Self::Backproject(..) | Self::Average { .. } | Self::MergeColors(_) | Self::Combine(_) => {
+                RenderStage::LightBackproject
             }
-            Self::Raycast(_) => Stage::LightRaycast,
-            Self::SkyBlocks | Self::SkyBatch(_) => Stage::Sky,
-            Self::Bounce(_) => Stage::Bounces,
-            Self::Eye(_) | Self::ScatterEye(_) | Self::Floor(_) => Stage::Eye,
-            Self::Display => Stage::Display,
+            Self::Raycast(_) => RenderStage::LightRaycast,
+            Self::SkyBlocks | Self::SkyBatch(_) => RenderStage::Sky,
+            Self::ScatteredLight(_) => RenderStage::ScatteredLight,
+            Self::Eye(_) | Self::ScatterEye(_) | Self::Floor(_) => RenderStage::Eye,
+            Self::Display => RenderStage::Display,
             Self::Finish(_) => return None,
         })
     }
 }
 
 /// Splits rows that are still to be drawn into bands of `rows`.
-pub(super) fn cut_into_bands(steps: &mut VecDeque<Step>, rows: u32) {
+pub(super) fn split_into_bands(steps: &mut VecDeque<RenderStep>, rows: u32) {
     let mut cut = VecDeque::with_capacity(steps.len());
     for step in steps.drain(..) {
         match step {
-            Step::Eye(range) => cut_rows(&mut cut, range, rows, Step::Eye),
-            Step::Floor(range) => cut_rows(&mut cut, range, (rows / floor::COST).max(1), Step::Floor),
+            RenderStep::Eye(range) => append_bands(&mut cut, range, rows, RenderStep::Eye),
+            RenderStep::Floor(range) => {
+                append_bands(&mut cut, range, (rows / floor::ROW_COST).max(1), RenderStep::Floor);
+            }
             other => cut.push_back(other),
         }
     }
@@ -172,9 +174,14 @@ pub(super) fn cut_into_bands(steps: &mut VecDeque<Step>, rows: u32) {
 }
 
 /// Appends bands of rows. Adjacent bands are merged again when the band height grows.
-fn cut_rows(steps: &mut VecDeque<Step>, range: Range<u32>, rows: u32, step: fn(Range<u32>) -> Step) {
+fn append_bands(
+    steps: &mut VecDeque<RenderStep>,
+    range: Range<u32>,
+    rows: u32,
+    step: fn(Range<u32>) -> RenderStep,
+) {
     let Range { mut start, end } = range;
-    if let Some(Step::Eye(last) | Step::Floor(last)) = steps.back()
+    if let Some(RenderStep::Eye(last) | RenderStep::Floor(last)) = steps.back()
         && steps.back() == Some(&step(last.clone()))
         && last.end == start
         && last.end - last.start < rows
@@ -194,13 +201,15 @@ mod tests {
 
     #[test]
     fn bands_are_cut_and_joined_again() {
-        let mut steps: VecDeque<Step> = [Step::Eye(0..10), Step::Floor(0..10), Step::Display].into();
-        cut_into_bands(&mut steps, 4);
-        let eye = [Step::Eye(0..4), Step::Eye(4..8), Step::Eye(8..10)];
-        let floor = (0..5).map(|k| Step::Floor(2 * k..2 * k + 2));
-        let wanted: VecDeque<Step> = eye.into_iter().chain(floor).chain([Step::Display]).collect();
+        let mut steps: VecDeque<RenderStep> =
+            [RenderStep::Eye(0..10), RenderStep::Floor(0..10), RenderStep::Display].into();
+        split_into_bands(&mut steps, 4);
+        let eye = [RenderStep::Eye(0..4), RenderStep::Eye(4..8), RenderStep::Eye(8..10)];
+        let floor = (0..5).map(|k| RenderStep::Floor(2 * k..2 * k + 2));
+        let wanted: VecDeque<RenderStep> =
+            eye.into_iter().chain(floor).chain([RenderStep::Display]).collect();
         assert_eq!(steps, wanted);
-        cut_into_bands(&mut steps, 100);
-        assert_eq!(steps, [Step::Eye(0..10), Step::Floor(0..10), Step::Display]);
+        split_into_bands(&mut steps, 100);
+        assert_eq!(steps, [RenderStep::Eye(0..10), RenderStep::Floor(0..10), RenderStep::Display]);
     }
 }

@@ -4,12 +4,12 @@
 //! fill a light volume; casting rays from its voxels is the alternative. The volume of an area light is the average
 //! over points on it.
 
-pub(super) mod average;
+pub(super) mod area_light;
 pub(super) mod backproject;
-pub(super) mod colors;
-pub(super) mod combine;
+pub(super) mod colored_shadows;
+pub(super) mod combined_light;
 pub(super) mod floor_shadow;
+pub(super) mod light_uniform;
+pub(super) mod light_volume;
 pub(super) mod march;
-pub(super) mod packed;
 pub(super) mod raycast;
-pub(super) mod volume;

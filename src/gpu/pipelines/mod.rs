@@ -1,11 +1,12 @@
 //! Shader sources, pipelines and their variants, bindings by name, uniforms.
 
 pub(super) mod binding;
-pub(super) mod conditions;
 pub(super) mod layouts;
 mod pipeline_cache;
-pub(super) mod shader;
+pub(super) mod pipeline_variant;
+pub(super) mod preprocessor;
 pub(super) mod shader_files;
+pub(super) mod shader_library;
 #[cfg_attr(
     not(feature = "testing"),
     expect(
@@ -15,4 +16,3 @@ pub(super) mod shader_files;
     )
 )]
 pub mod uniforms;
-pub(super) mod variant;

@@ -3,5 +3,5 @@
 pub(super) mod pictures;
 pub(super) mod statistics;
 #[cfg(feature = "testing")]
-mod testing;
+mod test_hooks;
 pub(super) mod tiled;

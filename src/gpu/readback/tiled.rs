@@ -2,20 +2,20 @@
 //! limits and memory do not limit their size.
 
 use crate::data::{Dataset, Volume};
-use crate::export::Rows;
-use crate::gpu::resources::readback::{read_floats, read_texture};
+use crate::export::PixelRows;
+use crate::gpu::resources::textures::{read_floats, read_texture};
 use crate::gpu::{GpuError, RenderOptions, Renderer};
 use crate::math::SceneSpace;
-use crate::model::{Depth, ImageSpec, Settings};
+use crate::model::{ImageSpec, PixelFormat, Settings};
 use crate::plan::PixelWindow;
 use crate::plan::picture_frame;
 
 /// Maximum number of samples in a part: a full-HD picture in one part, and about 100 MiB of textures.
-const MOST_SAMPLES: u32 = 1 << 21;
+const MAX_PART_SAMPLES: u32 = 1 << 21;
 
 /// Maximum size of a part of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct LargestPart {
+pub(crate) struct PartLimits {
     /// Maximum number of samples along an edge.
     pub edge: u32,
     /// Maximum number of samples in all.
@@ -24,15 +24,15 @@ pub(crate) struct LargestPart {
 
 /// Picture in progress, drawn in bands from the top down.
 #[derive(Debug)]
-pub struct Bands<'a> {
+pub struct PictureBands<'a> {
     renderer: &'a mut Renderer,
     dataset: &'a Dataset,
     settings: &'a Settings,
-    shot: ImageSpec,
+    spec: ImageSpec,
     /// Width of the margin drawn around each part, in pixels.
     margin: u32,
     /// Bands yet to be drawn, the next one last.
-    left: Vec<Vec<PixelWindow>>,
+    remaining: Vec<Vec<PixelWindow>>,
     total: usize,
     /// `true` if the volume is not visible in the bands drawn so far.
     is_empty: bool,
@@ -44,11 +44,11 @@ impl Renderer {
         &'a mut self,
         dataset: &'a Dataset,
         settings: &'a Settings,
-        shot: &ImageSpec,
-    ) -> Bands<'a> {
+        image_spec: &ImageSpec,
+    ) -> PictureBands<'a> {
         let longest = self.context().device.limits().max_texture_dimension_2d;
-        let largest = LargestPart { edge: longest, samples: MOST_SAMPLES };
-        self.bands_within(dataset, settings, shot, largest)
+        let largest = PartLimits { edge: longest, samples: MAX_PART_SAMPLES };
+        self.bands_within(dataset, settings, image_spec, largest)
     }
 
     /// Begins a picture in parts of at most the given size.
@@ -56,25 +56,34 @@ impl Renderer {
         &'a mut self,
         dataset: &'a Dataset,
         settings: &'a Settings,
-        shot: &ImageSpec,
-        largest: LargestPart,
-    ) -> Bands<'a> {
-        let samples = shot.samples.max(1);
-        let margin = margin(dataset.volume(), settings, shot.size, samples);
+        image_spec: &ImageSpec,
+        largest: PartLimits,
+    ) -> PictureBands<'a> {
+        let samples = image_spec.samples.max(1);
+        let margin = gradient_margin(dataset.volume(), settings, image_spec.size, samples);
         let longest = (largest.edge / samples).saturating_sub(2 * margin);
         let mut left: Vec<_> =
-            PixelWindow::bands(shot.size, longest, largest.samples / (samples * samples)).collect();
+            PixelWindow::bands(image_spec.size, longest, largest.samples / (samples * samples)).collect();
         left.reverse();
         let total = left.len();
-        let shot = ImageSpec { samples, ..*shot };
-        Bands { renderer: self, dataset, settings, shot, margin, left, total, is_empty: true }
+        let image_spec = ImageSpec { samples, ..*image_spec };
+        PictureBands {
+            renderer: self,
+            dataset,
+            settings,
+            spec: image_spec,
+            margin,
+            remaining: left,
+            total,
+            is_empty: true,
+        }
     }
 }
 
-impl Bands<'_> {
+impl PictureBands<'_> {
     /// Returns the number of bands drawn, and the total.
     pub fn progress(&self) -> (usize, usize) {
-        (self.total - self.left.len(), self.total)
+        (self.total - self.remaining.len(), self.total)
     }
 
     /// Returns true if the volume is not visible in the bands drawn so far.
@@ -86,46 +95,51 @@ impl Bands<'_> {
     ///
     /// # Errors
     /// Returns an error if the device fails or memory is exhausted.
-    pub fn next_rows(&mut self) -> Result<Option<Rows>, GpuError> {
-        let Some(parts) = self.left.pop() else { return Ok(None) };
-        let width = self.shot.size[0] as usize;
+    pub fn next_rows(&mut self) -> Result<Option<PixelRows>, GpuError> {
+        let Some(parts) = self.remaining.pop() else { return Ok(None) };
+        let width = self.spec.size[0] as usize;
         let height = parts.first().map_or(0, |part| part.size[1] as usize);
         let channels = 4 * width * height;
         let (mut bytes, mut floats) = (Vec::new(), Vec::new());
-        if self.shot.depth == Depth::Eight {
+        if self.spec.depth == PixelFormat::Eight {
             bytes.resize(channels, 0);
         } else {
             floats.resize(channels, 0.0);
         }
         for part in parts {
             let drawn = part.widened(self.margin);
-            let options = RenderOptions { part: Some(drawn), ..RenderOptions::of_shot(&self.shot) };
-            self.renderer.draw(self.dataset, self.settings, self.shot.size, &options)?;
+            let options = RenderOptions { part: Some(drawn), ..RenderOptions::for_image(&self.spec) };
+            self.renderer.draw(self.dataset, self.settings, self.spec.size, &options)?;
             // Tested only until something is visible.
             self.is_empty = self.is_empty && self.renderer.is_picture_empty()?;
-            let (context, shown) = (self.renderer.context(), &self.renderer.shown()?.shown.value.texture);
-            if self.shot.depth == Depth::Eight {
-                lay(&mut bytes, &read_texture(context, shown)?, width, drawn, part);
+            let (context, shown) =
+                (self.renderer.context(), &self.renderer.displayed_target()?.display.product.texture);
+            if self.spec.depth == PixelFormat::Eight {
+                copy_part(&mut bytes, &read_texture(context, shown)?, width, drawn, part);
             } else {
-                lay(&mut floats, &read_floats(context, shown)?, width, drawn, part);
+                copy_part(&mut floats, &read_floats(context, shown)?, width, drawn, part);
             }
         }
-        Ok(Some(if self.shot.depth == Depth::Eight { Rows::Bytes(bytes) } else { Rows::Floats(floats) }))
+        Ok(Some(if self.spec.depth == PixelFormat::Eight {
+            PixelRows::Bytes(bytes)
+        } else {
+            PixelRows::Floats(floats)
+        }))
     }
 
     /// Draws all remaining bands at once.
     ///
     /// # Errors
     /// Same as [`Self::next_rows`].
-    pub fn all(mut self) -> Result<Rows, GpuError> {
-        let mut whole = match self.shot.depth {
-            Depth::Eight => Rows::Bytes(Vec::new()),
-            Depth::Sixteen | Depth::Linear => Rows::Floats(Vec::new()),
+    pub fn all(mut self) -> Result<PixelRows, GpuError> {
+        let mut whole = match self.spec.depth {
+            PixelFormat::Eight => PixelRows::Bytes(Vec::new()),
+            PixelFormat::Sixteen | PixelFormat::Linear => PixelRows::Floats(Vec::new()),
         };
         while let Some(rows) = self.next_rows()? {
             match (&mut whole, rows) {
-                (Rows::Bytes(all), Rows::Bytes(more)) => all.extend(more),
-                (Rows::Floats(all), Rows::Floats(more)) => all.extend(more),
+                (PixelRows::Bytes(all), PixelRows::Bytes(more)) => all.extend(more),
+                (PixelRows::Floats(all), PixelRows::Floats(more)) => all.extend(more),
                 _ => {}
             }
         }
@@ -135,18 +149,18 @@ impl Bands<'_> {
 
 /// Returns the margin that a part needs, in pixels: gradients of scattered sheets are differences of neighbouring
 /// pixels.
-fn margin(volume: &Volume, settings: &Settings, size: [u32; 2], samples: u32) -> u32 {
-    if !settings.scatters() {
+fn gradient_margin(volume: &Volume, settings: &Settings, size: [u32; 2], samples: u32) -> u32 {
+    if !settings.uses_scattering_engine() {
         return 0;
     }
     let scene = SceneSpace::new(volume.dims(), volume.world_from_index());
-    let fine = PixelWindow::from(size).finer(samples);
+    let fine = PixelWindow::from(size).supersampled(samples);
     let frame = picture_frame(settings, &scene, fine);
     frame.gradient_steps().0.div_ceil(samples)
 }
 
 /// Copies a part of the drawn texels to its place in a band.
-fn lay<T: Copy>(band: &mut [T], texels: &[T], width: usize, drawn: PixelWindow, part: PixelWindow) {
+fn copy_part<T: Copy>(band: &mut [T], texels: &[T], width: usize, drawn: PixelWindow, part: PixelWindow) {
     let (left, columns) = (part.first[0] as usize, part.size[0] as usize);
     let [before, above] = [0, 1].map(|axis| (part.first[axis] - drawn.first[axis]) as usize);
     let rows = texels.chunks_exact(4 * drawn.size[0] as usize).skip(above);

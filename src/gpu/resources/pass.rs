@@ -1,15 +1,15 @@
 //! Bind groups and dispatches of compute passes.
 
-use crate::gpu::Context;
-use crate::gpu::pipelines::binding::{Named, Pipeline};
+use crate::gpu::GpuContext;
+use crate::gpu::pipelines::binding::{NamedResource, ShaderPipeline};
 
 /// Creates a bind group for one of a pipeline's groups.
 pub(crate) fn bind(
-    context: &Context,
+    context: &GpuContext,
     label: &str,
-    pipeline: &Pipeline,
+    pipeline: &ShaderPipeline,
     group: usize,
-    named: &[Named<'_>],
+    named: &[NamedResource<'_>],
 ) -> wgpu::BindGroup {
     let group = &pipeline.groups[group];
     context.device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -23,7 +23,7 @@ pub(crate) fn bind(
 pub(crate) fn dispatch(
     encoder: &mut wgpu::CommandEncoder,
     label: &str,
-    pipeline: &Pipeline,
+    pipeline: &ShaderPipeline,
     groups: &[&wgpu::BindGroup],
     [x, y, z]: [u32; 3],
 ) {
@@ -37,7 +37,7 @@ pub(crate) fn dispatch(
 }
 
 /// Returns the number of 8 × 8 workgroups that cover a sheet or a picture.
-pub(crate) fn tiles([width, height]: [u32; 2]) -> [u32; 3] {
+pub(crate) fn tile_workgroups([width, height]: [u32; 2]) -> [u32; 3] {
     [width.div_ceil(8), height.div_ceil(8), 1]
 }
 
@@ -45,12 +45,12 @@ pub(crate) fn tiles([width, height]: [u32; 2]) -> [u32; 3] {
 ///
 /// A software driver gives each thread a contiguous run of workgroups, so there are as many runs as threads, which
 /// balances expensive rows among them. Graphics cards dispatch workgroups one by one, in order.
-pub(crate) fn runs(context: &Context, [_, rows, _]: [u32; 3]) -> u32 {
-    threads(context).min(rows.max(1))
+pub(crate) fn interleaved_runs(context: &GpuContext, [_, rows, _]: [u32; 3]) -> u32 {
+    driver_threads(context).min(rows.max(1))
 }
 
 /// Returns the number of threads of a software driver; 1 for a graphics card.
-pub(crate) fn threads(context: &Context) -> u32 {
+pub(crate) fn driver_threads(context: &GpuContext) -> u32 {
     let threads = || std::thread::available_parallelism().map_or(1, |threads| threads.get() as u32);
     if context.is_software() { threads() } else { 1 }
 }

@@ -1,6 +1,6 @@
 //! Tables of pre-integrated footprints, looked up by `scatter/footprint.wgsl`.
 
-use crate::model::Kernel;
+use crate::model::ReconstructionKernel;
 
 /// Number of entries in a table, as in the shader.
 const FOOTPRINT_SIZE: usize = 512;
@@ -10,8 +10,8 @@ pub(crate) const RADIUS: f64 = 2.0;
 
 /// Tabulates a Gaussian kernel of radius two voxels: its profile by the squared distance from the ray, and its
 /// integral along the ray. Zeros for other kernels.
-pub(crate) fn footprint_table(kernel: Kernel) -> Vec<[f32; 2]> {
-    let Kernel::Gaussian { sigma } = kernel else { return vec![[0.0; 2]; FOOTPRINT_SIZE] };
+pub(crate) fn footprint_table(kernel: ReconstructionKernel) -> Vec<[f32; 2]> {
+    let ReconstructionKernel::Gaussian { sigma } = kernel else { return vec![[0.0; 2]; FOOTPRINT_SIZE] };
     let variance = sigma * sigma;
     let across = |squared: f64| (-squared / (2.0 * variance)).exp() / (std::f64::consts::TAU * variance);
     let along = |t: f64| (-t * t / (2.0 * variance)).exp() / (std::f64::consts::TAU * variance).sqrt();
@@ -37,7 +37,7 @@ mod tests {
     #[test]
     fn a_pre_integrated_footprint_has_volume_one() {
         for sigma in [0.4, 0.6] {
-            let table = footprint_table(Kernel::Gaussian { sigma });
+            let table = footprint_table(ReconstructionKernel::Gaussian { sigma });
             // ∫ 2πr · across dr = ∫ π · across d(r²).
             let step = RADIUS * RADIUS / (FOOTPRINT_SIZE - 1) as f64;
             let disc: f64 =

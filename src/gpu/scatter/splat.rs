@@ -4,32 +4,32 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use super::footprint_table::{RADIUS, footprint_table};
 use super::sheet_lists::{slab_lists, slice_lists};
-use super::voxels::{ScatterVoxels, Scattering};
-use crate::gpu::pipelines::binding::{Pipeline, buffer};
+use super::voxels::{ScatterState, ScatterVoxels};
+use crate::gpu::pipelines::binding::{ShaderPipeline, bind_buffer};
+use crate::gpu::pipelines::pipeline_variant::{PipelineVariant, ReconstructionVariant, ShaderConstants};
 use crate::gpu::pipelines::uniforms::{self, rows};
-use crate::gpu::pipelines::variant::{Constants, Reconstruction, Variant};
 use crate::gpu::resources::pass;
-use crate::gpu::volume::Gpu;
-use crate::gpu::volume::listed_bricks;
-use crate::gpu::volume::transfer_tables::Table;
-use crate::gpu::{Context, GpuError};
-use crate::model::{Kernel, Quadrature, SheetOrder};
+use crate::gpu::volume::VolumeContext;
+use crate::gpu::volume::brick_list;
+use crate::gpu::volume::transfer_tables::TransferTable;
+use crate::gpu::{GpuContext, GpuError};
+use crate::model::{ReconstructionKernel, SheetOrder, SlabQuadrature};
 use crate::plan::{BrickSet, SheetFrame, SliceOrder};
 
 /// Stack of sheets that voxels are splatted into.
 #[derive(Debug)]
-pub(crate) struct Scatterer {
+pub(crate) struct SheetScatterer {
     /// Geometry of rays and slabs.
     pub frame: SheetFrame,
     variant: ScatterVariant,
     /// Slices of voxels, if sheets are aligned with the volume.
     slices: Option<SliceOrder>,
     /// Parts of the uniform that are the same for all slabs.
-    uniform: uniforms::Scatter,
+    uniform: uniforms::ScatterSlabUniform,
     /// Half extents of an unstretched kernel in (w·i, w·j, z).
-    half: DVec3,
+    half_extents: DVec3,
     /// Maximum stretch of kernels.
-    widest: f64,
+    max_stretch: f64,
     /// Bricks of all slabs, slab by slab.
     bricks: wgpu::Buffer,
     /// Starts of the slabs' lists: slab k has the bricks `starts[k] .. starts[k + 1]`.
@@ -42,7 +42,7 @@ pub(crate) struct Scatterer {
 
 /// Quantity that is splatted for each voxel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum Splat {
+pub(crate) enum SplatQuantity {
     /// Density, classified after summation.
     Density,
     /// Extinction, for lights.
@@ -51,7 +51,7 @@ pub(crate) enum Splat {
     Material,
 }
 
-impl Splat {
+impl SplatQuantity {
     /// Returns the constant `SPLAT` of `scatter/slab.wgsl`.
     pub(crate) fn constant(self) -> (&'static str, f64) {
         let code = match self {
@@ -63,7 +63,7 @@ impl Splat {
     }
 
     /// Returns the number of sums per pixel.
-    fn sums(self) -> u32 {
+    fn sum_count(self) -> u32 {
         match self {
             Self::Density | Self::Extinction => 1,
             Self::Material => 5,
@@ -73,23 +73,23 @@ impl Splat {
 
 /// Parameters of splatting: kernel, quadrature and order.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Splatting {
-    pub kernel: Kernel,
-    pub quadrature: Quadrature,
+pub(crate) struct SplatParameters {
+    pub kernel: ReconstructionKernel,
+    pub quadrature: SlabQuadrature,
     pub order: SheetOrder,
 }
 
 /// Pipeline variant shared by the scattering passes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct ScatterVariant {
-    pub reconstruction: Reconstruction,
+    pub reconstruction: ReconstructionVariant,
     pub order: SheetOrder,
-    pub splat: Splat,
+    pub splat: SplatQuantity,
 }
 
 impl ScatterVariant {
     /// Creates the variant of one of the passes.
-    pub(crate) fn of(self, shader: &'static str) -> ScatterPass {
+    pub(crate) fn for_shader(self, shader: &'static str) -> ScatterPass {
         ScatterPass { shader, variant: self }
     }
 
@@ -104,7 +104,7 @@ impl ScatterVariant {
     }
 
     /// Returns all constants of passes that evaluate kernels.
-    pub(crate) fn constants(self) -> Constants {
+    pub(crate) fn constants(self) -> ShaderConstants {
         let mut constants = self.reconstruction.constants();
         constants.extend(self.sheet_constants());
         constants
@@ -118,43 +118,43 @@ pub(crate) struct ScatterPass {
     variant: ScatterVariant,
 }
 
-impl Variant for ScatterPass {
+impl PipelineVariant for ScatterPass {
     fn shader(&self) -> &'static str {
         self.shader
     }
 
-    fn constants(&self) -> Constants {
+    fn constants(&self) -> ShaderConstants {
         self.variant.constants()
     }
 }
 
-impl Scatterer {
+impl SheetScatterer {
     /// Prepares a stack of sheets, of which `layers` are stored at a time. Only bricks of `seen` are splatted.
     pub(crate) fn new(
-        gpu: Gpu<'_>,
+        gpu: VolumeContext<'_>,
         voxels: &ScatterVoxels,
         frame: &SheetFrame,
-        Splatting { kernel, quadrature, order }: Splatting,
-        (what, table): (Splat, &Table),
+        SplatParameters { kernel, quadrature, order }: SplatParameters,
+        (what, table): (SplatQuantity, &TransferTable),
         seen: &BrickSet,
         layers: u32,
     ) -> Result<Self, GpuError> {
-        let Gpu { context, volume, .. } = gpu;
+        let VolumeContext { context, volume, .. } = gpu;
         let sheets_from_index = sheets_from_index(frame);
         let dims = volume.volume.dims();
         let slices = (order != SheetOrder::ImageAligned).then(|| SliceOrder::new(frame, dims));
-        let tabled = if slices.is_some() { round(kernel) } else { kernel };
-        let half = half_extents(frame, &sheets_from_index, tabled);
+        let tabulated_kernel = if slices.is_some() { isotropic_kernel(kernel) } else { kernel };
+        let half = half_extents(frame, &sheets_from_index, tabulated_kernel);
         let widest = frame.widest_stretch();
         let (starts, listed) = match &slices {
-            None => slab_lists(frame, &sheets_from_index, voxels.among(seen), half.z * widest),
-            Some(slices) => slice_lists(slices, voxels.among(seen)),
+            None => slab_lists(frame, &sheets_from_index, voxels.bricks_in(seen), half.z * widest),
+            Some(slices) => slice_lists(slices, voxels.bricks_in(seen)),
         };
         let axis = slices
             .map_or([0.0; 3], |slices| std::array::from_fn(|axis| f32::from(u8::from(axis == slices.axis))));
         let [x, y, z] = rows(&sheets_from_index);
-        let uniform = uniforms::Scatter {
-            frame: uniforms::SheetFrame::new(frame),
+        let uniform = uniforms::ScatterSlabUniform {
+            frame: uniforms::SheetFrameUniform::new(frame),
             sheets_from_index_x: x,
             sheets_from_index_y: y,
             sheets_from_index_z: z,
@@ -165,7 +165,7 @@ impl Scatterer {
             light_dims: dims.map(|n| n as u32),
             sheet_count: starts.len() as u32 - 1,
             first_slice: slices.map_or(0.0, |slices| slices.first as f32),
-            slice_step: slices.map_or(0.0, |slices| slices.step as f32),
+            slice_step: slices.map_or(0.0, |slices| slices.direction as f32),
             axis,
             extinction_unit: table.largest_extinction().max(1e-9),
             ..bytemuck::Zeroable::zeroed()
@@ -173,21 +173,22 @@ impl Scatterer {
         Ok(Self {
             frame: frame.clone(),
             variant: ScatterVariant {
-                reconstruction: Reconstruction::new(kernel, quadrature).ending(volume.ends_of_all()),
+                reconstruction: ReconstructionVariant::new(kernel, quadrature)
+                    .with_boundaries(volume.possible_boundaries()),
                 order,
                 splat: what,
             },
             slices,
             uniform,
-            half,
-            widest,
+            half_extents: half,
+            max_stretch: widest,
             bricks: context.buffer("Scatterer::bricks", &listed, wgpu::BufferUsages::STORAGE),
             starts,
-            sheets: sums(context, "Scatterer::sheets", layers * what.sums(), frame.size)?,
+            sheets: sums(context, "Scatterer::sheets", layers * what.sum_count(), frame.size)?,
             table: table.buffer.clone(),
             footprints: context.buffer(
                 "Scatterer::footprints",
-                &footprint_table(tabled),
+                &footprint_table(tabulated_kernel),
                 wgpu::BufferUsages::STORAGE,
             ),
         })
@@ -195,7 +196,7 @@ impl Scatterer {
 
     /// Sets the parameters for splatting back into a light volume, with `divisor` data voxels per light voxel.
     #[must_use]
-    pub(crate) fn towards_grid(
+    pub(crate) fn with_light_grid(
         mut self,
         first_pixel: [f32; 2],
         cube_face: bool,
@@ -229,8 +230,8 @@ impl Scatterer {
     }
 
     /// Returns the maximum stretch of kernels.
-    pub(crate) fn widest(&self) -> f64 {
-        self.widest
+    pub(crate) fn max_stretch(&self) -> f64 {
+        self.max_stretch
     }
 
     /// Returns true if any brick is splatted into slab `k`.
@@ -239,17 +240,17 @@ impl Scatterer {
     }
 
     /// Builds the uniform of slab `k`, for kernels of at least `least_stretch` times the voxels' width.
-    pub(crate) fn uniform(&self, k: u32, least_stretch: f64) -> uniforms::Scatter {
+    pub(crate) fn uniform(&self, k: u32, least_stretch: f64) -> uniforms::ScatterSlabUniform {
         // Slices of voxels have no depth of their own, and so one stretch for all.
         let stretch = if self.slices.is_some() {
-            self.widest
+            self.max_stretch
         } else {
             self.frame.stretch_at(f64::from(k)).max(least_stretch)
         };
         let pitch = self.frame.pitch_at(self.frame.depth_of(f64::from(k))) / self.frame.voxel_edge;
         let starts = &self.starts[k as usize..=k as usize + 1];
-        uniforms::Scatter {
-            half: (self.half * stretch).as_vec3().into(),
+        uniforms::ScatterSlabUniform {
+            half_extents: (self.half_extents * stretch).as_vec3().into(),
             stretch: stretch as f32,
             k,
             first: starts[0],
@@ -260,7 +261,7 @@ impl Scatterer {
     }
 
     /// Creates the uniform buffer of slab `k`.
-    pub(crate) fn uniform_buffer(&self, context: &Context, k: u32, least_stretch: f64) -> wgpu::Buffer {
+    pub(crate) fn uniform_buffer(&self, context: &GpuContext, k: u32, least_stretch: f64) -> wgpu::Buffer {
         let uniform = self.uniform(k, least_stretch);
         context.buffer("Scatterer::uniform", &[uniform], wgpu::BufferUsages::UNIFORM)
     }
@@ -268,14 +269,15 @@ impl Scatterer {
     /// Creates the bind group of passes with footprints.
     pub(crate) fn bind_group(
         &self,
-        context: &Context,
-        pipeline: &Pipeline,
+        context: &GpuContext,
+        pipeline: &ShaderPipeline,
         uniform: &wgpu::Buffer,
         with_sheets: bool,
     ) -> wgpu::BindGroup {
-        let mut entries = vec![buffer("bound_scatter", uniform), buffer("footprint_table", &self.footprints)];
+        let mut entries =
+            vec![bind_buffer("bound_scatter", uniform), bind_buffer("footprint_table", &self.footprints)];
         if with_sheets {
-            entries.push(buffer("sheets", &self.sheets));
+            entries.push(bind_buffer("sheets", &self.sheets));
         }
         pass::bind(context, "Scatterer::bind_group", pipeline, 1, &entries)
     }
@@ -283,13 +285,13 @@ impl Scatterer {
     /// Splats the voxels of slab `k`, and counts the footprints.
     pub(crate) fn splat(
         &self,
-        gpu: Gpu<'_>,
-        Scattering { voxels, counter }: &Scattering,
+        gpu: VolumeContext<'_>,
+        ScatterState { voxels, counter }: &ScatterState,
         k: u32,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let Gpu { context, shaders, .. } = gpu;
-        let pipeline = shaders.pipeline(&self.variant.of("scatter/splat.wgsl"))?;
+        let VolumeContext { context, shaders, .. } = gpu;
+        let pipeline = shaders.pipeline(&self.variant.for_shader("scatter/splat.wgsl"))?;
         let uniform = self.uniform_buffer(context, k, 1.0);
         let own = pass::bind(
             context,
@@ -297,15 +299,15 @@ impl Scatterer {
             &pipeline,
             0,
             &[
-                buffer("bricks", &self.bricks),
-                buffer("table", &self.table),
-                buffer("voxels", &voxels.buffer),
-                buffer("splats", counter),
+                bind_buffer("bricks", &self.bricks),
+                bind_buffer("table", &self.table),
+                bind_buffer("voxels", &voxels.buffer),
+                bind_buffer("splats", counter),
             ],
         );
         let shared = self.bind_group(context, &pipeline, &uniform, true);
         let [start, end] = [self.starts[k as usize], self.starts[k as usize + 1]];
-        let workgroups = listed_bricks::workgroups(end - start);
+        let workgroups = brick_list::two_workgroups_per_brick(end - start);
         pass::dispatch(encoder, "Scatterer::splat", &pipeline, &[&own, &shared], workgroups);
         Ok(())
     }
@@ -318,7 +320,7 @@ impl Scatterer {
 
 /// Creates a zeroed buffer of integer sums, one per pixel of each layer.
 pub(crate) fn sums(
-    context: &Context,
+    context: &GpuContext,
     label: &'static str,
     layers: u32,
     [width, height]: [u32; 2],
@@ -333,7 +335,7 @@ pub(crate) fn sums(
             help: "the gathering engine makes the same picture without it",
         });
     }
-    Ok(context.empty_buffer(&wgpu::BufferDescriptor {
+    Ok(context.uninitialised_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
         size,
         usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
@@ -342,10 +344,12 @@ pub(crate) fn sums(
 }
 
 /// Returns the isotropic kernel that replaces one: a Gaussian of the same variance, ⅓ for the others.
-fn round(kernel: Kernel) -> Kernel {
+fn isotropic_kernel(kernel: ReconstructionKernel) -> ReconstructionKernel {
     match kernel {
-        Kernel::Gaussian { .. } => kernel,
-        Kernel::BSpline | Kernel::Prefiltered => Kernel::Gaussian { sigma: (1.0f64 / 3.0).sqrt() },
+        ReconstructionKernel::Gaussian { .. } => kernel,
+        ReconstructionKernel::BSpline | ReconstructionKernel::Prefiltered => {
+            ReconstructionKernel::Gaussian { sigma: (1.0f64 / 3.0).sqrt() }
+        }
     }
 }
 
@@ -358,9 +362,9 @@ fn sheets_from_index(frame: &SheetFrame) -> DAffine3 {
 
 /// Returns half the extents of a kernel in (w·i, w·j, z). The Gaussian is bounded by a cylinder along the ray, others
 /// by cubes along the axes of the grid.
-fn half_extents(frame: &SheetFrame, sheets_from_index: &DAffine3, kernel: Kernel) -> DVec3 {
+fn half_extents(frame: &SheetFrame, sheets_from_index: &DAffine3, kernel: ReconstructionKernel) -> DVec3 {
     let rows = sheets_from_index.matrix3.transpose();
-    if !matches!(kernel, Kernel::Gaussian { .. }) {
+    if !matches!(kernel, ReconstructionKernel::Gaussian { .. }) {
         return RADIUS
             * DVec3::new(
                 rows.x_axis.abs().element_sum(),

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use crate::data::{BRICK_EDGE, Volume};
 use crate::gpu::volume::GpuVolume;
-use crate::gpu::{Context, GpuError};
+use crate::gpu::{GpuContext, GpuError};
 use crate::plan::BrickSet;
 
 /// Number of words per brick, with two voxels in each.
@@ -22,20 +22,20 @@ pub(crate) struct ScatterVoxels {
     /// Buffer with the word where each brick's voxels begin, for shaders; −1 for empty bricks.
     pub first_words: wgpu::Buffer,
     /// `true` if empty bricks are listed, too.
-    pub holds_all: bool,
+    pub has_empty_bricks: bool,
 }
 
 /// Voxels that a picture scatters, and the counter of its footprints.
 #[derive(Debug)]
-pub(crate) struct Scattering {
+pub(crate) struct ScatterState {
     pub voxels: Arc<ScatterVoxels>,
     /// Buffer of one word: number of footprints so far.
     pub counter: wgpu::Buffer,
 }
 
-impl Scattering {
+impl ScatterState {
     /// Creates the state for one picture, whose footprints are counted from zero.
-    pub(crate) fn new(context: &Context, voxels: Arc<ScatterVoxels>) -> Self {
+    pub(crate) fn new(context: &GpuContext, voxels: Arc<ScatterVoxels>) -> Self {
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
         Self { voxels, counter: context.buffer("Scattering::counter", &[0u32], usage) }
     }
@@ -46,10 +46,10 @@ impl ScatterVoxels {
     ///
     /// # Errors
     /// Returns an error if they exceed the adapter's largest buffer.
-    pub(crate) fn new(context: &Context, volume: &GpuVolume, all: bool) -> Result<Self, GpuError> {
+    pub(crate) fn new(context: &GpuContext, volume: &GpuVolume, all: bool) -> Result<Self, GpuError> {
         let [nx, ny, nz] = volume.bricks.dims;
         let layers: Vec<_> =
-            (0..nz).into_par_iter().map(|z| layer_words(&volume.volume, z, [nx, ny], all)).collect();
+            (0..nz).into_par_iter().map(|z| encode_layer(&volume.volume, z, [nx, ny], all)).collect();
         let bricks = layers.iter().flatten().filter(|words| words.is_some()).count();
         let bytes = (bricks * BRICK_WORDS * 4) as u64;
         let limit = context.device.limits().max_storage_buffer_binding_size;
@@ -72,11 +72,11 @@ impl ScatterVoxels {
         let buffer = context.buffer("ScatterVoxels::buffer", &listed, wgpu::BufferUsages::STORAGE);
         let words: Vec<i32> = first_word.iter().map(|word| word.map_or(-1, |word| word as i32)).collect();
         let first_words = context.buffer("ScatterVoxels::first_words", &words, wgpu::BufferUsages::STORAGE);
-        Ok(Self { buffer, first_word, first_words, holds_all: all })
+        Ok(Self { buffer, first_word, first_words, has_empty_bricks: all })
     }
 
     /// Returns the non-empty bricks of a set: coordinates and first word.
-    pub(crate) fn among<'a>(&'a self, set: &'a BrickSet) -> impl Iterator<Item = ([usize; 3], u32)> + 'a {
+    pub(crate) fn bricks_in<'a>(&'a self, set: &'a BrickSet) -> impl Iterator<Item = ([usize; 3], u32)> + 'a {
         let [nx, ny, _] = set.dims;
         set.positions()
             .filter_map(move |[x, y, z]| Some(([x, y, z], self.first_word[x + nx * (y + ny * z)]?)))
@@ -89,7 +89,7 @@ impl ScatterVoxels {
 }
 
 /// Encodes every brick of layer `z`; `None` for empty ones, unless `all` is set.
-fn layer_words(volume: &Volume, z: usize, [nx, ny]: [usize; 2], all: bool) -> Vec<Option<Vec<u32>>> {
+fn encode_layer(volume: &Volume, z: usize, [nx, ny]: [usize; 2], all: bool) -> Vec<Option<Vec<u32>>> {
     let dims = volume.dims();
     let first = z * BRICK_EDGE;
     let slices: Vec<Vec<f32>> =

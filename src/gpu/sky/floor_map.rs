@@ -4,37 +4,37 @@ use glam::DVec3;
 
 use crate::gpu::pipelines::uniforms;
 use crate::gpu::volume::texture_3d;
-use crate::gpu::{Context, GpuError};
+use crate::gpu::{GpuContext, GpuError};
 use crate::math::SceneSpace;
-use crate::plan::{FloorPlace, FloorTexels};
+use crate::plan::{FloorPlane, FloorTexels};
 
 /// Range of the map's texels along an edge; within it, texels are as large as the blocks of the sky volume. The
 /// maximum is a block of two voxels of 64, for the two units of the scene.
-const EDGES: std::ops::RangeInclusive<u32> = 96..=192;
+const TEXEL_RANGE: std::ops::RangeInclusive<u32> = 96..=192;
 
 /// Map of the sky visibility on the floor.
 #[derive(Debug)]
-pub(crate) struct FloorMap {
+pub(crate) struct FloorSkyMap {
     /// Extent of the floor that the map covers.
-    pub place: FloorPlace,
+    pub extent: FloorPlane,
     /// View of the moments: C₁ in rgb, C₀ in a.
     pub view: wgpu::TextureView,
     /// Number of texels along an edge.
     pub edge: u32,
 }
 
-impl FloorMap {
+impl FloorSkyMap {
     /// Creates the texture, for a volume with blocks of edge `block` in scene units; nothing is filled yet.
     ///
     /// # Errors
     /// Returns an error if memory is exhausted.
-    pub(crate) fn new(context: &Context, place: FloorPlace, block: f64) -> Result<Self, GpuError> {
-        let edge = FloorPlace::texels_of(block).clamp(*EDGES.start(), *EDGES.end());
+    pub(crate) fn new(context: &GpuContext, place: FloorPlane, block: f64) -> Result<Self, GpuError> {
+        let edge = FloorPlane::texel_count(block).clamp(*TEXEL_RANGE.start(), *TEXEL_RANGE.end());
         let usages = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
         let format = wgpu::TextureFormat::Rgba16Float;
         let size = [edge as usize, edge as usize, 1];
         let texture = context.texture(&texture_3d("FloorMap::texture", size, format, usages))?;
-        Ok(Self { place, view: texture.create_view(&wgpu::TextureViewDescriptor::default()), edge })
+        Ok(Self { extent: place, view: texture.create_view(&wgpu::TextureViewDescriptor::default()), edge })
     }
 
     /// Returns the number of texels.
@@ -49,18 +49,23 @@ impl FloorMap {
 
     /// Builds the uniform for filling the map from blocks of `divisor`³ voxels; `share` normalises the sums so that
     /// the moment C₀ of an open floor is 1.
-    pub(crate) fn uniform(&self, scene: &SceneSpace, divisor: usize, share: f64) -> uniforms::FloorMap {
+    pub(crate) fn uniform(
+        &self,
+        scene: &SceneSpace,
+        divisor: usize,
+        share: f64,
+    ) -> uniforms::FloorSkyMapUniform {
         let divisor = divisor as f64;
         let block = |place: DVec3| (scene.index_from_scene.transform_point3(place) + 0.5) / divisor - 0.5;
-        let FloorTexels { origin: corner, along: [right, front] } = self.place.texels(self.edge);
+        let FloorTexels { origin: corner, along: [right, front] } = self.extent.texels(self.edge);
         let origin = block(corner);
         // The floor's plane in block coordinates: the gradient of height, and its value at the corner, which lies on
         // the floor.
-        let up = self.place.up.direction();
+        let up = self.extent.up.direction();
         let scene_from_block = scene.scene_from_index.matrix3 * divisor;
         let normal = scene_from_block.transpose() * up;
         let along = |step: DVec3| (block(corner + step) - origin).as_vec3().into();
-        uniforms::FloorMap {
+        uniforms::FloorSkyMapUniform {
             origin: origin.as_vec3().into(),
             share: share as f32,
             along_x: along(right),

@@ -4,9 +4,9 @@
 //! transmittance is summed into two moments over directions: the mean transmittance V₀, and the mean V₁ of
 //! transmittance times direction.
 
-pub(super) mod batches;
-pub(super) mod blocks;
-pub(super) mod build;
+pub(super) mod direction_batches;
+pub(super) mod extinction_blocks;
+pub(super) mod fill;
 pub(super) mod floor_map;
 pub(super) mod sheets;
 pub(super) mod sweep;

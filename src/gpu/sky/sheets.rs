@@ -1,7 +1,7 @@
 //! Sheets of a sweep: light along the rays of a batch of directions, slice by slice.
 
 use crate::gpu::volume::texture_3d;
-use crate::gpu::{Context, GpuError};
+use crate::gpu::{GpuContext, GpuError};
 
 /// 3D texture with columns and rows of rays, and a layer for each slice of each direction in a batch.
 ///
@@ -19,7 +19,7 @@ impl RaySheets {
     /// # Errors
     /// Returns an error if memory is exhausted.
     pub(crate) fn new(
-        context: &Context,
+        context: &GpuContext,
         size: [usize; 3],
         format: wgpu::TextureFormat,
     ) -> Result<Self, GpuError> {

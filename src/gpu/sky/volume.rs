@@ -2,23 +2,23 @@
 
 use std::sync::Arc;
 
-use super::floor_map::FloorMap;
-use crate::gpu::pipelines::binding::view_of;
-use crate::gpu::pipelines::variant::Only;
-use crate::gpu::resources::fill_time::FillTime;
+use super::floor_map::FloorSkyMap;
+use crate::gpu::pipelines::binding::bind_view;
+use crate::gpu::pipelines::pipeline_variant::SingleVariant;
+use crate::gpu::resources::fill_time::FillStopwatch;
 use crate::gpu::resources::pass;
-use crate::gpu::volume::listed_cells::ListedCells;
-use crate::gpu::volume::{Gpu, texture_3d};
-use crate::gpu::{Context, GpuError};
+use crate::gpu::volume::cell_list::CellList;
+use crate::gpu::volume::{VolumeContext, texture_3d};
+use crate::gpu::{GpuContext, GpuError};
 use crate::math::SceneSpace;
-use crate::model::Resolution;
-use crate::plan::{CellSet, FloorPlace};
+use crate::model::LightVolumeResolution;
+use crate::plan::{CellSet, FloorPlane};
 
 /// Size of a block's four sums, in bytes.
 pub(crate) const SUM_BYTES: u64 = 16;
 
 /// Maximum number of texels for the rays of one direction: 128 MiB of sheets.
-pub(crate) const MOST_TEXELS: u64 = 1 << 26;
+pub(crate) const MAX_DIRECTION_TEXELS: u64 = 1 << 26;
 
 /// Sky visibility of blocks of voxels.
 #[derive(Debug)]
@@ -30,13 +30,13 @@ pub(crate) struct SkyVolume {
     /// View of the moments: V₁ in rgb, V₀ in a.
     pub view: wgpu::TextureView,
     /// Sky-visibility map of the floor, if there was a floor when the volume was filled.
-    pub floor: Option<FloorMap>,
+    pub floor: Option<FloorSkyMap>,
     /// Cells (of blocks) that hold values, or will when the volume is complete.
-    pub filled: Arc<CellSet>,
+    pub filled_cells: Arc<CellSet>,
     /// Cells around the filled ones, which only previews look up and which see the whole sky.
     pub margin: CellSet,
     /// Stopwatch for the filling of the volume.
-    pub fill: FillTime,
+    pub fill_time: FillStopwatch,
     /// Counter value at the last use; the least recently used volume is dropped first.
     pub last_used: u64,
 }
@@ -47,11 +47,11 @@ impl SkyVolume {
     /// # Errors
     /// Returns an error if memory is exhausted.
     pub(crate) fn new(
-        context: &Context,
+        context: &GpuContext,
         scene: &SceneSpace,
         divisor: usize,
         (filled, margin): (Arc<CellSet>, CellSet),
-        floor: Option<FloorPlace>,
+        floor: Option<FloorPlane>,
     ) -> Result<Self, GpuError> {
         let dims = scene.dims.map(|n| n.div_ceil(divisor));
         let texture = context.texture(&texture_3d(
@@ -64,23 +64,32 @@ impl SkyVolume {
         ))?;
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let block = scene.smallest_edge() * divisor as f64;
-        let floor = floor.map(|place| FloorMap::new(context, place, block)).transpose()?;
-        Ok(Self { dims, divisor, view, floor, filled, margin, fill: FillTime::default(), last_used: 0 })
+        let floor = floor.map(|place| FloorSkyMap::new(context, place, block)).transpose()?;
+        Ok(Self {
+            dims,
+            divisor,
+            view,
+            floor,
+            filled_cells: filled,
+            margin,
+            fill_time: FillStopwatch::default(),
+            last_used: 0,
+        })
     }
 
     /// Sets the cells of the margin to an unoccluded sky.
     pub(crate) fn clear_margin(
         &self,
-        gpu: Gpu<'_>,
+        gpu: VolumeContext<'_>,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let cells = ListedCells::new(gpu.context, &self.margin);
-        let pipeline = gpu.shaders.pipeline(&Only("sky/clear_margin.wgsl"))?;
+        let cells = CellList::new(gpu.context, &self.margin);
+        let pipeline = gpu.shaders.pipeline(&SingleVariant("sky/clear_margin.wgsl"))?;
         let own = gpu.bind(
             "SkyVolume::clear_margin",
             &pipeline,
             0,
-            &[cells.entry(), view_of("moments", &self.view)],
+            &[cells.binding(), bind_view("moments", &self.view)],
         );
         pass::dispatch(encoder, "SkyVolume::clear_margin", &pipeline, &[&own], cells.workgroups());
         Ok(())
@@ -93,17 +102,17 @@ impl SkyVolume {
 
     /// Returns the size of the textures, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
-        self.floor.as_ref().map_or(0, FloorMap::bytes)
+        self.floor.as_ref().map_or(0, FloorSkyMap::bytes)
             + 8 * self.dims.iter().map(|&n| n as u64).product::<u64>()
     }
 }
 
 /// Returns the number of voxels along the edge of a block for an adapter, at a resolution, with at most `most_texels`
 /// for the rays of one direction; see [`divisor_for`].
-pub(crate) fn divisor_on(
-    context: &Context,
+pub(crate) fn divisor_for_adapter(
+    context: &GpuContext,
     grid: [usize; 3],
-    resolution: Resolution,
+    resolution: LightVolumeResolution,
     most_texels: u64,
 ) -> usize {
     let most_sums = context.device.limits().max_storage_buffer_binding_size / SUM_BYTES;
@@ -114,7 +123,11 @@ pub(crate) fn divisor_on(
 ///
 /// It is that of the resolution, doubled until the rays of one direction are within `most_texels`, and the blocks
 /// within the number of sums that a buffer of the adapter holds.
-fn divisor_for(grid: [usize; 3], resolution: Resolution, (most_texels, most_sums): (u64, u64)) -> usize {
+fn divisor_for(
+    grid: [usize; 3],
+    resolution: LightVolumeResolution,
+    (most_texels, most_sums): (u64, u64),
+) -> usize {
     let mut divisor = resolution.divisor();
     let texels = |divisor: usize| {
         let [x, y, z] = grid.map(|n| n.div_ceil(divisor) as u64);
@@ -134,17 +147,20 @@ mod tests {
 
     #[test]
     fn large_volumes_are_followed_in_larger_blocks() {
-        let of = |n: usize, resolution| divisor_for([n; 3], resolution, (MOST_TEXELS, u64::MAX));
-        assert_eq!(of(256, Resolution::Full), 1);
-        assert_eq!(of(257, Resolution::Full), 2);
-        assert_eq!(of(512, Resolution::Half), 2);
-        assert_eq!(of(1024, Resolution::Half), 4);
-        assert_eq!(of(2048, Resolution::Quarter), 8);
+        let of = |n: usize, resolution| divisor_for([n; 3], resolution, (MAX_DIRECTION_TEXELS, u64::MAX));
+        assert_eq!(of(256, LightVolumeResolution::Full), 1);
+        assert_eq!(of(257, LightVolumeResolution::Full), 2);
+        assert_eq!(of(512, LightVolumeResolution::Half), 2);
+        assert_eq!(of(1024, LightVolumeResolution::Half), 4);
+        assert_eq!(of(2048, LightVolumeResolution::Quarter), 8);
         // In a single row of voxels the rays drift as far as they advance, so only 256 blocks are possible.
-        assert_eq!(divisor_for([4096, 1, 1], Resolution::Full, (MOST_TEXELS, u64::MAX)), 16);
+        assert_eq!(
+            divisor_for([4096, 1, 1], LightVolumeResolution::Full, (MAX_DIRECTION_TEXELS, u64::MAX)),
+            16
+        );
         // The smallest limit on bindings of all adapters is 128 MiB.
         let least = (128 << 20) / SUM_BYTES;
-        assert_eq!(divisor_for([256; 3], Resolution::Full, (MOST_TEXELS, least)), 2);
-        assert_eq!(divisor_for([203; 3], Resolution::Full, (MOST_TEXELS, least)), 1);
+        assert_eq!(divisor_for([256; 3], LightVolumeResolution::Full, (MAX_DIRECTION_TEXELS, least)), 2);
+        assert_eq!(divisor_for([203; 3], LightVolumeResolution::Full, (MAX_DIRECTION_TEXELS, least)), 1);
     }
 }

@@ -1,34 +1,34 @@
 //! Volume on the GPU: density texture with a replicated border, and the pyramid made from it.
 
+pub(super) mod brick_list;
+pub(super) mod cell_list;
 pub(super) mod gradients;
-pub(super) mod listed_bricks;
-pub(super) mod listed_cells;
-pub(super) mod materials;
-pub(super) mod prefilter;
+pub(super) mod preclassified;
 pub(super) mod presence;
-mod shapes;
+pub(super) mod pyramid;
+mod texture_shapes;
 mod textures;
 pub(super) mod transfer_tables;
 
-pub(crate) use shapes::texture_3d;
+pub(crate) use texture_shapes::texture_3d;
+pub(crate) use textures::create_volume_textures;
 #[cfg(feature = "testing")]
 pub use textures::stored_density;
-pub(crate) use textures::textures;
 
 use std::sync::Arc;
 
 use half::f16;
 
-use self::presence::Presence;
-use self::shapes::padded;
-use self::textures::{Textures, density_is_unorm, unorm16};
-use super::resources::pool::ResourcePool;
-use super::resources::tools::Tools;
-use super::{Context, GpuError};
-use crate::data::{BRICK_EDGE, Bricks, CELL_EDGE, Volume};
-use crate::gpu::pipelines::binding::{Named, Pipeline, buffer, sampler, view_of};
-use crate::gpu::pipelines::uniforms::Grid;
-use crate::gpu::pipelines::variant::Ends;
+use self::presence::PresenceTexture;
+use self::texture_shapes::pyramid_dims;
+use self::textures::{VolumeTextures, density_is_unorm, unorm16};
+use super::resources::gpu_tools::GpuTools;
+use super::resources::resource_pool::ResourcePool;
+use super::{GpuContext, GpuError};
+use crate::data::{BRICK_EDGE, BrickBounds, CELL_EDGE, Volume};
+use crate::gpu::pipelines::binding::{NamedResource, ShaderPipeline, bind_buffer, bind_view, sampler};
+use crate::gpu::pipelines::pipeline_variant::GridBoundaries;
+use crate::gpu::pipelines::uniforms::GridUniform;
 use crate::math::SceneSpace;
 
 /// Size of an upload step in bytes, small enough for a few milliseconds.
@@ -36,8 +36,8 @@ const UPLOAD_BYTES: usize = 2 << 20;
 
 /// Inputs shared by all passes over a volume: device, pipelines, volume and pool.
 #[derive(Clone, Copy)]
-pub(crate) struct Gpu<'a> {
-    pub context: &'a Context,
+pub(crate) struct VolumeContext<'a> {
+    pub context: &'a GpuContext,
     pub shaders: &'a super::ShaderLibrary,
     pub volume: &'a GpuVolume,
     /// 1 × 1 × 1 texture that is bound where a shader declares a texture which the pass does not need.
@@ -45,49 +45,49 @@ pub(crate) struct Gpu<'a> {
     pub pool: &'a ResourcePool,
 }
 
-impl<'a> Gpu<'a> {
+impl<'a> VolumeContext<'a> {
     /// Combines the tools of a device with a volume.
-    pub(crate) fn new(tools: &'a Tools, volume: &'a GpuVolume) -> Self {
-        let Tools { context, shaders, pool, placeholder } = tools;
+    pub(crate) fn new(tools: &'a GpuTools, volume: &'a GpuVolume) -> Self {
+        let GpuTools { context, shaders, pool, placeholder } = tools;
         Self { context, shaders, volume, placeholder, pool }
     }
 }
 
-impl Gpu<'_> {
+impl VolumeContext<'_> {
     /// Returns a pooled uniform buffer for the submission being recorded.
     pub(crate) fn uniform<T: bytemuck::NoUninit>(&self, label: &'static str, value: T) -> wgpu::Buffer {
         self.pool.buffer(self.context, label, &[value], wgpu::BufferUsages::UNIFORM)
     }
 
     /// Returns a pooled storage buffer for the submission being recorded; it may be longer than `values`.
-    pub(crate) fn list<T: bytemuck::NoUninit>(&self, label: &'static str, values: &[T]) -> wgpu::Buffer {
+    pub(crate) fn storage<T: bytemuck::NoUninit>(&self, label: &'static str, values: &[T]) -> wgpu::Buffer {
         self.pool.buffer(self.context, label, values, wgpu::BufferUsages::STORAGE)
     }
 
     /// Returns a pooled storage buffer of at least `room` bytes, so that lists of any length up to that share one
     /// buffer.
-    pub(crate) fn list_with_room<T: bytemuck::NoUninit>(
+    pub(crate) fn storage_of_at_least<T: bytemuck::NoUninit>(
         &self,
         label: &'static str,
         values: &[T],
         room: u64,
     ) -> wgpu::Buffer {
-        self.pool.buffer_with_room(self.context, label, values, wgpu::BufferUsages::STORAGE, room)
+        self.pool.buffer_of_at_least(self.context, label, values, wgpu::BufferUsages::STORAGE, room)
     }
 
     /// Creates a bind group, cached in the pool.
     pub(crate) fn bind(
         &self,
         label: &str,
-        pipeline: &Pipeline,
+        pipeline: &ShaderPipeline,
         group: usize,
-        entries: &[Named<'_>],
+        entries: &[NamedResource<'_>],
     ) -> wgpu::BindGroup {
         self.pool.bind(self.context, label, pipeline, group, entries)
     }
 
     /// Creates bind group 1 of passes that read a pyramid but not the density texture.
-    pub(crate) fn bind_pyramid(&self, pipeline: &Pipeline, pyramid: &LevelViews) -> wgpu::BindGroup {
+    pub(crate) fn bind_pyramid(&self, pipeline: &ShaderPipeline, pyramid: &PyramidViews) -> wgpu::BindGroup {
         let volume = self.volume;
         let grid = self.uniform("Volume::grid", volume.grid(0));
         self.bind(
@@ -95,21 +95,25 @@ impl Gpu<'_> {
             pipeline,
             1,
             &[
-                buffer("bound_grid", &grid),
-                view_of("pyramid_texture", &pyramid.all),
-                view_of("presence_texture", self.presence(Levels::All)),
+                bind_buffer("bound_grid", &grid),
+                bind_view("pyramid_texture", &pyramid.all),
+                bind_view("presence_texture", self.presence(PyramidLevels::All)),
                 sampler("clamped", &volume.clamped),
             ],
         )
     }
 
     /// Creates bind group 1 of passes that read a pyramid without presence.
-    pub(crate) fn bind_pyramid_alone(&self, pipeline: &Pipeline, pyramid: &LevelViews) -> wgpu::BindGroup {
+    pub(crate) fn bind_pyramid_without_presence(
+        &self,
+        pipeline: &ShaderPipeline,
+        pyramid: &PyramidViews,
+    ) -> wgpu::BindGroup {
         let volume = self.volume;
         let grid = self.uniform("Volume::grid", volume.grid(0));
         let entries = [
-            buffer("bound_grid", &grid),
-            view_of("pyramid_texture", &pyramid.all),
+            bind_buffer("bound_grid", &grid),
+            bind_view("pyramid_texture", &pyramid.all),
             sampler("clamped", &volume.clamped),
         ];
         self.bind("Volume::pyramid_alone_bind_group", pipeline, 1, &entries)
@@ -118,56 +122,56 @@ impl Gpu<'_> {
     /// Creates bind group 1 of passes that sample density.
     pub(crate) fn bind_volume(
         &self,
-        pipeline: &Pipeline,
+        pipeline: &ShaderPipeline,
         dilation: i32,
-        levels: Levels,
-        pyramids: Pyramids<'_>,
+        levels: PyramidLevels,
+        pyramids: PassPyramids<'_>,
     ) -> wgpu::BindGroup {
         let volume = self.volume;
         let grid = self.uniform("Volume::grid", volume.grid(dilation));
         let mut entries = vec![
-            buffer("bound_grid", &grid),
-            view_of("density_texture", &volume.density_view),
-            view_of("pyramid_texture", levels.choose(pyramids.own)),
-            view_of("presence_texture", self.presence(levels)),
+            bind_buffer("bound_grid", &grid),
+            bind_view("density_texture", &volume.density_view),
+            bind_view("pyramid_texture", levels.choose(pyramids.primary)),
+            bind_view("presence_texture", self.presence(levels)),
             sampler("clamped", &volume.clamped),
             sampler("nearest", &volume.nearest),
         ];
-        entries.extend(pyramids.lighting.map(|views| view_of("lighting_pyramid", levels.choose(views))));
+        entries.extend(pyramids.lighting.map(|views| bind_view("lighting_pyramid", levels.choose(views))));
         self.bind("Volume::bind_group", pipeline, 1, &entries)
     }
 
     /// Returns the view of the presence texture if voxels are missing, else the placeholder.
-    pub(crate) fn presence(&self, levels: Levels) -> &wgpu::TextureView {
+    pub(crate) fn presence(&self, levels: PyramidLevels) -> &wgpu::TextureView {
         self.volume.presence.as_ref().map_or(self.placeholder, |presence| levels.choose(&presence.views))
     }
 }
 
-/// Pyramids that a pass reads: of densities, or of pre-classified voxels ([`materials`]).
+/// Pyramids that a pass reads: of densities, or of pre-classified voxels ([`preclassified`]).
 #[derive(Clone, Copy)]
-pub(crate) struct Pyramids<'a> {
-    pub own: &'a LevelViews,
+pub(crate) struct PassPyramids<'a> {
+    pub primary: &'a PyramidViews,
     /// Pyramid of what attenuates light, for eye passes that cast near-field rays.
-    pub lighting: Option<&'a LevelViews>,
+    pub lighting: Option<&'a PyramidViews>,
 }
 
 /// Range of pyramid levels that a pass may read.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Levels {
+pub(crate) enum PyramidLevels {
     /// Level 0 alone, for kernels that are not stretched.
     Finest,
     /// All levels, for stretched kernels.
     All,
 }
 
-impl Levels {
+impl PyramidLevels {
     /// Returns the levels that stretched or unstretched kernels need.
-    pub(crate) fn of(is_stretched: bool) -> Self {
+    pub(crate) fn for_stretch(is_stretched: bool) -> Self {
         if is_stretched { Self::All } else { Self::Finest }
     }
 
     /// Selects the view with these levels.
-    pub(crate) fn choose(self, views: &LevelViews) -> &wgpu::TextureView {
+    pub(crate) fn choose(self, views: &PyramidViews) -> &wgpu::TextureView {
         match self {
             Self::Finest => &views.finest,
             Self::All => &views.all,
@@ -178,14 +182,14 @@ impl Levels {
 /// Views of a pyramid texture: all levels, and the finest alone. For views with several levels a software driver
 /// computes the level sizes for each lane and fetch, which the second view avoids.
 #[derive(Debug)]
-pub(crate) struct LevelViews {
+pub(crate) struct PyramidViews {
     /// View of all levels of the pyramid.
     pub all: wgpu::TextureView,
     /// View of level 0 of the pyramid.
     finest: wgpu::TextureView,
 }
 
-impl LevelViews {
+impl PyramidViews {
     fn new(texture: &wgpu::Texture) -> Self {
         let all = wgpu::TextureViewDescriptor::default();
         let finest = wgpu::TextureViewDescriptor { mip_level_count: Some(1), ..all.clone() };
@@ -199,25 +203,25 @@ pub(crate) struct GpuVolume {
     /// Volume that is uploaded; kept for later uploads and for the passes' work on the CPU.
     pub volume: Arc<Volume>,
     /// Density ranges of bricks of 8³ voxels.
-    pub bricks: Arc<Bricks>,
+    pub bricks: Arc<BrickBounds>,
     /// Transform between index space and scene space.
     pub scene: SceneSpace,
     density: wgpu::Texture,
     pub density_view: wgpu::TextureView,
     pub pyramid: wgpu::Texture,
-    pub pyramid_views: LevelViews,
+    pub pyramid_views: PyramidViews,
     /// Presence texture, if voxels are missing.
-    pub presence: Option<Presence>,
+    pub presence: Option<PresenceTexture>,
     /// Packed coordinates of the bricks that are non-empty, for each level of the pyramid.
     pub filled_levels: Vec<Vec<u32>>,
     /// Gradients of the pyramid; `None` if they take too much memory.
     pub gradients: Option<wgpu::Texture>,
     /// Views of the gradient texture.
-    pub gradients_views: Option<LevelViews>,
+    pub gradients_views: Option<PyramidViews>,
     pub clamped: wgpu::Sampler,
     nearest: wgpu::Sampler,
-    unorm: bool,
-    grid: Grid,
+    is_unorm: bool,
+    grid: GridUniform,
 }
 
 impl GpuVolume {
@@ -226,20 +230,20 @@ impl GpuVolume {
     /// # Errors
     /// Returns an error if the adapter cannot hold the textures.
     pub(crate) fn new(
-        context: &Context,
+        context: &GpuContext,
         volume: &Arc<Volume>,
-        bricks: &Arc<Bricks>,
-        presence: Option<Presence>,
+        bricks: &Arc<BrickBounds>,
+        presence: Option<PresenceTexture>,
     ) -> Result<Self, GpuError> {
         let dims = volume.dims();
-        let Textures { density, pyramid } = textures(context, volume, dims)?;
+        let VolumeTextures { density, pyramid } = create_volume_textures(context, volume, dims)?;
         let presence = match presence {
-            None => Presence::new(context, volume, dims)?,
+            None => PresenceTexture::new(context, volume, dims)?,
             known => known,
         };
-        let padded = padded(dims);
+        let padded = pyramid_dims(dims);
         let reciprocal = |sizes: [usize; 3]| sizes.map(|n| 1.0 / n as f32);
-        let grid = Grid {
+        let grid = GridUniform {
             dims: dims.map(|n| n as f32),
             dilation: 0,
             density_scale: reciprocal(dims.map(|n| n + 2)),
@@ -249,17 +253,17 @@ impl GpuVolume {
             cell_scale: reciprocal(bricks.dims.map(|n| n * BRICK_EDGE / CELL_EDGE)),
             pad2: 0.0,
         };
-        let gradients = gradients::texture(context, &pyramid);
+        let gradients = gradients::gradient_texture(context, &pyramid);
         Ok(Self {
             volume: Arc::clone(volume),
             bricks: Arc::clone(bricks),
             scene: volume.scene(),
             density_view: density.create_view(&wgpu::TextureViewDescriptor::default()),
             density,
-            filled_levels: prefilter::filled_levels(bricks, &pyramid, presence.is_some()),
-            gradients_views: gradients.as_ref().map(LevelViews::new),
+            filled_levels: pyramid::nonempty_bricks(bricks, &pyramid, presence.is_some()),
+            gradients_views: gradients.as_ref().map(PyramidViews::new),
             gradients,
-            pyramid_views: LevelViews::new(&pyramid),
+            pyramid_views: PyramidViews::new(&pyramid),
             pyramid,
             presence,
             clamped: context.sampler("Volume::clamped"),
@@ -267,7 +271,7 @@ impl GpuVolume {
                 label: Some("Volume::nearest"),
                 ..Default::default()
             }),
-            unorm: density_is_unorm(context, volume),
+            is_unorm: density_is_unorm(context, volume),
             grid,
         })
     }
@@ -280,11 +284,11 @@ impl GpuVolume {
 
     /// Uploads some z-slices, each with a replicated border of one voxel; the first and last slices are also
     /// replicated in front and behind.
-    pub(crate) fn upload(&self, context: &Context, slices: std::ops::Range<usize>) {
+    pub(crate) fn upload(&self, context: &GpuContext, slices: std::ops::Range<usize>) {
         use rayon::prelude::*;
         let [nx, ny, nz] = self.volume.dims();
         let encode =
-            |density: f32| if self.unorm { unorm16(density) } else { f16::from_f32(density).to_bits() };
+            |density: f32| if self.is_unorm { unorm16(density) } else { f16::from_f32(density).to_bits() };
         let first = if slices.start == 0 { 0 } else { slices.start + 1 };
         let end = if slices.end == nz { nz + 2 } else { slices.end + 1 };
         // Voxel that a texel of the border replicates.
@@ -323,13 +327,13 @@ impl GpuVolume {
     }
 
     /// Returns the grid boundaries that can be visible with any transfer function.
-    pub(crate) fn ends_of_all(&self) -> Ends {
-        if self.presence.is_some() { Ends::AtMissing } else { Ends::BetweenFaces }
+    pub(crate) fn possible_boundaries(&self) -> GridBoundaries {
+        if self.presence.is_some() { GridBoundaries::MissingVoxels } else { GridBoundaries::OppositeFaces }
     }
 
     /// Returns the uniform of the grid, for a pass whose samples reach `dilation` cells beyond their own.
-    pub(crate) fn grid(&self, dilation: i32) -> Grid {
-        Grid { dilation, ..self.grid }
+    pub(crate) fn grid(&self, dilation: i32) -> GridUniform {
+        GridUniform { dilation, ..self.grid }
     }
 
     /// Returns the size of the textures, in bytes.
@@ -340,8 +344,9 @@ impl GpuVolume {
         };
         // Two channels where voxels are missing; the coarser levels of the pyramid add a seventh.
         let channels = if self.presence.is_some() { 2 } else { 1 };
-        let gradients = self.gradients.as_ref().map_or(0, |texture| gradients::bytes(texels(texture)));
-        let presence = self.presence.as_ref().map_or(0, Presence::bytes);
+        let gradients =
+            self.gradients.as_ref().map_or(0, |texture| gradients::gradient_bytes(texels(texture)));
+        let presence = self.presence.as_ref().map_or(0, PresenceTexture::bytes);
         2 * texels(&self.density) + channels * texels(&self.pyramid) * 16 / 7 + presence + gradients
     }
 }

@@ -12,7 +12,7 @@ pub const MAX_FLOOR_RADIUS: f64 = 100.0;
 /// out towards its border.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Floor {
+pub struct FloorSettings {
     /// Enables the floor.
     pub on: bool,
     /// Height above the centre of the scene, in scene units, along the camera's [`crate::model::Camera::up`].
@@ -27,21 +27,21 @@ pub struct Floor {
     pub shadow_only: bool,
 }
 
-impl Default for Floor {
+impl Default for FloorSettings {
     fn default() -> Self {
         // A mid grey is darker than the object in light, and lighter than its shadows.
         Self { on: false, height: -1.0, radius: 4.0, color: [0.6; 3], opacity: 1.0, shadow_only: false }
     }
 }
 
-impl Floor {
+impl FloorSettings {
     /// Fraction of the radius up to which the floor has its full opacity.
-    pub const WHOLE: f64 = 0.3;
+    pub const OPAQUE_SHARE: f64 = 0.3;
 
-    /// Returns the floor's opacity at a distance from its centre: full up to [`Self::WHOLE`] of the radius, 0 from
-    /// the radius on, 3t² − 2t³ between.
-    pub fn presence(&self, distance: f64) -> f64 {
-        let t = ((self.radius - distance) / (self.radius * (1.0 - Self::WHOLE))).clamp(0.0, 1.0);
+    /// Returns the floor's opacity at a distance from its centre: full up to [`Self::OPAQUE_SHARE`] of the radius, 0
+    /// from the radius on, 3t² − 2t³ between.
+    pub fn opacity_at(&self, distance: f64) -> f64 {
+        let t = ((self.radius - distance) / (self.radius * (1.0 - Self::OPAQUE_SHARE))).clamp(0.0, 1.0);
         self.opacity * t * t * (3.0 - 2.0 * t)
     }
 }
@@ -52,8 +52,8 @@ mod tests {
 
     #[test]
     fn the_floor_fades_out() {
-        let floor = Floor { radius: 2.0, opacity: 0.8, ..Floor::default() };
-        assert_eq!([0.0, 0.6, 2.0, 9.0].map(|distance| floor.presence(distance)), [0.8, 0.8, 0.0, 0.0]);
-        assert!((floor.presence(1.3) - 0.4).abs() < 1e-12);
+        let floor = FloorSettings { radius: 2.0, opacity: 0.8, ..FloorSettings::default() };
+        assert_eq!([0.0, 0.6, 2.0, 9.0].map(|distance| floor.opacity_at(distance)), [0.8, 0.8, 0.0, 0.0]);
+        assert!((floor.opacity_at(1.3) - 0.4).abs() < 1e-12);
     }
 }

@@ -10,7 +10,7 @@ use crate::math::SceneSpace;
 /// every resolution uses shares of the volume's longest edge.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Length {
+pub enum OpacityLength {
     /// Length in millimetres of world space.
     Mm(f64),
     /// Multiples of the edge of a cube with a voxel's volume.
@@ -19,9 +19,9 @@ pub enum Length {
     Extent(f64),
 }
 
-impl Length {
+impl OpacityLength {
     /// Converts the length to scene units.
-    pub fn in_scene(self, scene: &SceneSpace) -> f64 {
+    pub fn scene_units(self, scene: &SceneSpace) -> f64 {
         match self {
             Self::Mm(mm) => mm / scene.mm_per_unit,
             Self::Voxels(count) => count * scene.mean_edge(),
@@ -46,8 +46,8 @@ mod tests {
     #[test]
     fn units_agree() {
         let scene = SceneSpace::new([64, 64, 64], DAffine3::from_scale(DVec3::splat(2.0)));
-        for same in [Length::Mm(2.0), Length::Voxels(1.0), Length::Extent(1.0 / 64.0)] {
-            assert!((same.in_scene(&scene) - 2.0 / 64.0).abs() < 1e-12, "{same:?}");
+        for same in [OpacityLength::Mm(2.0), OpacityLength::Voxels(1.0), OpacityLength::Extent(1.0 / 64.0)] {
+            assert!((same.scene_units(&scene) - 2.0 / 64.0).abs() < 1e-12, "{same:?}");
         }
     }
 }

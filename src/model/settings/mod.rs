@@ -1,25 +1,26 @@
 //! Settings: the value that holds the complete look of an image.
 
-mod corrected;
-pub(super) mod cut;
-pub(super) mod eye;
+mod apply_corrections;
+pub(super) mod camera_settings;
+pub(super) mod clipping;
+pub(super) mod density_range;
 pub(super) mod floor;
-pub(super) mod kept;
-pub(super) mod labels;
+pub(super) mod label_table;
 pub(super) mod length;
 pub(super) mod light;
 pub(super) mod quality;
-pub(super) mod range;
 pub(super) mod sampling;
 pub(super) mod sanitise;
+pub(super) mod saved_entries;
 pub(super) mod shadows;
 
 use serde::{Deserialize, Serialize};
 
 use super::{
-    BakedTransfer, Camera, Classification, Cuts, DensityRange, Engine, Floor, Gradients, Kept, Kernel,
-    LabelTable, Length, Light, LightStorage, NearField, Quadrature, Sampling, Scattering, ShadowAlgorithm,
-    Shadows, SheetOrder, Sky, Slabs, TransferFunction,
+    BakedTransfer, Camera, ClassificationOrder, Clipping, DensityRange, FloorSettings, GradientSource,
+    LabelTable, LightSettings, LightStorage, NearFieldRay, OpacityLength, ReconstructionKernel, RenderEngine,
+    SamplingSettings, SavedEntry, ScatteringSettings, ShadowAlgorithm, ShadowSettings, SheetOrder,
+    SkySettings, SlabMode, SlabQuadrature, TransferFunction,
 };
 use crate::data::{BOUNDED_SIGMA, Corrections, SIGMA_TOLERANCE, ValueRange};
 use crate::math::SceneSpace;
@@ -37,7 +38,7 @@ pub struct Settings {
     /// Camera and its projection.
     pub camera: Camera,
     /// Lights, at most [`super::MAX_LIGHTS`].
-    pub lights: Vec<Light>,
+    pub lights: Vec<LightSettings>,
     /// Range of values that is mapped to densities of 0 … 1.
     pub range: DensityRange,
     /// Looks of labels, by number. If it has entries, volumes of integers are shown by their labels, and the transfer
@@ -48,25 +49,26 @@ pub struct Settings {
     /// Opacity that attenuates light.
     pub lighting: LightingTransfer,
     /// Length to which opacities refer.
-    pub opacity_unit: Length,
+    pub opacity_unit: OpacityLength,
     /// Illumination of material: Phong coefficients.
-    pub shading: Shading,
+    pub shading: PhongShading,
     /// Shadow algorithm and its parameters.
-    pub shadows: Shadows,
+    pub shadows: ShadowSettings,
     /// Ambient light from a sky or an environment map.
-    pub sky: Sky,
+    pub sky: SkySettings,
     /// Multiple scattering of light inside the volume.
-    pub scattering: Scattering,
+    pub scattering: ScatteringSettings,
     /// Clipping by a crop box and a plane.
-    pub cuts: Cuts,
+    pub cuts: Clipping,
     /// Floor under the volume that receives shadows.
-    pub floor: Floor,
+    pub floor: FloorSettings,
     /// Sampling of the eye's sheets.
-    pub sampling: Sampling,
+    pub sampling: SamplingSettings,
     /// Background, tone mapping and exposure.
-    pub output: Output,
-    /// Saved views and looks in their display order, at most [`super::MAX_KEPT`]; they do not affect the image.
-    pub kept: Vec<Kept>,
+    pub output: OutputSettings,
+    /// Saved views and looks in their display order, at most [`super::MAX_SAVED_ENTRIES`]; they do not affect the
+    /// image.
+    pub kept: Vec<SavedEntry>,
     /// Corrections of the volume by the user, where its file is wrong. They belong to that file: looks that are meant
     /// for any volume neither contain nor change them.
     pub volume: Corrections,
@@ -77,20 +79,20 @@ impl Default for Settings {
         Self {
             schema: SCHEMA,
             camera: Camera::default(),
-            lights: vec![Light::default()],
+            lights: vec![LightSettings::default()],
             range: DensityRange::Robust,
             labels: LabelTable::default(),
             transfer: TransferFunction::default(),
             lighting: LightingTransfer::default(),
-            opacity_unit: Length::Voxels(1.0),
-            shading: Shading::default(),
-            shadows: Shadows::default(),
-            sky: Sky::default(),
-            scattering: Scattering::default(),
-            cuts: Cuts::default(),
-            floor: Floor::default(),
-            sampling: Sampling::default(),
-            output: Output::default(),
+            opacity_unit: OpacityLength::Voxels(1.0),
+            shading: PhongShading::default(),
+            shadows: ShadowSettings::default(),
+            sky: SkySettings::default(),
+            scattering: ScatteringSettings::default(),
+            cuts: Clipping::default(),
+            floor: FloorSettings::default(),
+            sampling: SamplingSettings::default(),
+            output: OutputSettings::default(),
             kept: Vec::new(),
             volume: Corrections::default(),
         }
@@ -119,7 +121,7 @@ impl Default for LightingTransfer {
 /// Sides of a surface that receive diffuse light from lights with shadows. Lights without shadows illuminate both.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Sides {
+pub enum LitSides {
     /// Side to which opacity falls; highlights lie there, too.
     One,
     /// Both sides, as if light came through; highlights lie where density falls.
@@ -129,7 +131,7 @@ pub enum Sides {
 /// Coefficients of Phong's illumination equation (P eq. 2–4).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Shading {
+pub struct PhongShading {
     /// Emission as a share of the material's colour (`C_e`).
     pub emission: f64,
     /// Ambient reflection coefficient `k_a`, 0 … 10.
@@ -144,10 +146,10 @@ pub struct Shading {
     /// gradient is noise, and the sample is lit evenly from all sides.
     pub surface_gradient: f64,
     /// Sides of surfaces that are lit.
-    pub sides: Sides,
+    pub sides: LitSides,
 }
 
-impl Default for Shading {
+impl Default for PhongShading {
     fn default() -> Self {
         Self {
             emission: 0.0,
@@ -156,7 +158,7 @@ impl Default for Shading {
             specular: 0.25,
             shininess: 32.0,
             surface_gradient: 0.02,
-            sides: Sides::One,
+            sides: LitSides::One,
         }
     }
 }
@@ -183,7 +185,7 @@ pub struct Background {
 /// Output stage: background, tone mapping and exposure.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Output {
+pub struct OutputSettings {
     /// Background behind the volume; left out of transparent images.
     pub background: Background,
     /// Tone mapping of the volume, never applied to the background.
@@ -199,7 +201,7 @@ pub const MIN_EXPOSURE: f64 = 1.0 / 16.0;
 /// Largest exposure, four stops up: above it every image is white.
 pub const MAX_EXPOSURE: f64 = 16.0;
 
-impl Default for Output {
+impl Default for OutputSettings {
     fn default() -> Self {
         // #14161b … #262a33: dark, but not black, so that shadows stand out from it.
         let bytes = |rgb: [u8; 3]| rgb.map(|c| f32::from(c) / 255.0);
@@ -227,21 +229,21 @@ impl Settings {
 
     /// Returns true if every sample casts rays to all points of area lights: more loop iterations than drivers that
     /// run on the processor allow (Mesa's ends all loops of an invocation after 65,536), so that light is lost there.
-    pub fn casts_rays_to_all_points(&self) -> bool {
-        let has_size = |light: &Light| light.on && light.in_scene(&self.camera).area.is_some();
+    pub fn casts_rays_to_all_samples(&self) -> bool {
+        let has_size = |light: &LightSettings| light.on && light.resolve(&self.camera).area.is_some();
         self.shadows.algorithm == ShadowAlgorithm::Direct && self.lights.iter().any(has_size)
     }
 
     /// Returns true if light bounces; with shadows off, light does not interact with material.
     pub fn has_bounces(&self) -> bool {
-        let Scattering { bounces, albedo, strength, .. } = self.scattering;
+        let ScatteringSettings { bounces, albedo, strength, .. } = self.scattering;
         bounces > 0 && albedo > 0.0 && strength > 0.0 && self.shadows.algorithm.is_on()
     }
 
     /// Returns true if voxels are splatted by the scattering engine. Rays from every sample need the volume, so with
     /// direct shadows the image is gathered with either engine.
-    pub fn scatters(&self) -> bool {
-        self.sampling.engine == Engine::Scatter && self.shadows.algorithm != ShadowAlgorithm::Direct
+    pub fn uses_scattering_engine(&self) -> bool {
+        self.sampling.engine == RenderEngine::Scatter && self.shadows.algorithm != ShadowAlgorithm::Direct
     }
 
     /// Returns true if the diffuse light of all shadowed lights is stored in one combined volume of colours. With
@@ -256,7 +258,9 @@ impl Settings {
             // shadows.
             LightStorage::Auto => {
                 let alike = if self.has_colored_shadows() { 1 } else { 4 };
-                self.shading.specular == 0.0 && self.shadows.near_field == NearField::Off && shadowed > alike
+                self.shading.specular == 0.0
+                    && self.shadows.near_field == NearFieldRay::Off
+                    && shadowed > alike
             }
         };
         // Terms that depend on the view direction cannot be stored in a volume.
@@ -267,113 +271,117 @@ impl Settings {
     /// Returns the near-field rays in use. They need a light volume per light to continue from: in a combined volume,
     /// its voxels' own blur would remove their detail. None either if every footprint is composited, which is shaded
     /// as in the paper.
-    pub fn near_field(&self) -> NearField {
+    pub fn effective_near_field(&self) -> NearFieldRay {
         let looks_up =
             self.shadows.algorithm.has_volume() && !self.combines_lights() && !self.composites_footprints();
-        if looks_up { self.shadows.near_field } else { NearField::Off }
+        if looks_up { self.shadows.near_field } else { NearFieldRay::Off }
     }
 
     /// Returns true if the eye's slabs have adaptive thickness. A slab is divided where the gradient indicates that
     /// it contributes much: not if gradients come from sheets or voxels are classified first; and not with two-point
     /// quadrature, which does not need it.
-    pub fn has_slabs_by_need(&self) -> bool {
-        self.sampling.slabs == Slabs::ByNeed && self.can_divide_slabs()
+    pub fn has_adaptive_slabs(&self) -> bool {
+        self.sampling.slabs == SlabMode::ByNeed && self.samples_points()
     }
 
     /// Returns true if opacity is pre-integrated over the eye's slabs, from the densities at both ends of their
-    /// steps, under the conditions of [`Self::has_slabs_by_need`]; otherwise slabs are even.
+    /// steps, under the conditions of [`Self::has_adaptive_slabs`]; otherwise slabs are even.
     pub fn has_preintegrated_slabs(&self) -> bool {
-        self.sampling.slabs == Slabs::Preintegrated && self.can_divide_slabs()
+        self.sampling.slabs == SlabMode::Preintegrated && self.samples_points()
     }
 
     /// Returns true if point samples of density determine the image.
-    fn can_divide_slabs(&self) -> bool {
-        let Sampling { quadrature, gradients, .. } = self.sampling;
-        !self.scatters()
-            && quadrature == Quadrature::One
-            && gradients != Gradients::Sheets
-            && self.classification() == Classification::Post
+    fn samples_points(&self) -> bool {
+        let SamplingSettings { quadrature, gradients, .. } = self.sampling;
+        !self.uses_scattering_engine()
+            && quadrature == SlabQuadrature::One
+            && gradients != GradientSource::Sheets
+            && self.classification() == ClassificationOrder::Post
     }
 
     /// Returns the kernel with which the eye's samples are gathered: the prefiltered one if voxels are classified
     /// first, otherwise the chosen one.
-    pub fn eye_kernel(&self) -> Kernel {
-        self.kernel_of_gathered(self.sampling.kernel)
+    pub fn eye_kernel(&self) -> ReconstructionKernel {
+        self.gathering_kernel(self.sampling.kernel)
     }
 
     /// Returns the kernel with which the light pass gathers: the prefiltered one if voxels are classified first,
     /// otherwise the chosen one.
-    pub fn light_kernel(&self) -> Kernel {
-        self.kernel_of_gathered(self.shadows.kernel)
+    pub fn light_kernel(&self) -> ReconstructionKernel {
+        self.gathering_kernel(self.shadows.kernel)
     }
 
-    fn kernel_of_gathered(&self, chosen: Kernel) -> Kernel {
+    fn gathering_kernel(&self, chosen: ReconstructionKernel) -> ReconstructionKernel {
         match self.sampling.classification {
-            Classification::Post => chosen,
-            Classification::Pre => Kernel::Prefiltered,
+            ClassificationOrder::Post => chosen,
+            ClassificationOrder::Pre => ReconstructionKernel::Prefiltered,
         }
     }
 
     /// Returns the thickness of even slabs with the same look, in smallest voxel edges: adaptive slabs cost as much,
     /// and err as much, as even ones of half their largest thickness.
-    pub fn mean_slab(&self) -> f64 {
+    pub fn equivalent_even_slab(&self) -> f64 {
         match self.sampling.slabs {
-            Slabs::Even | Slabs::Preintegrated => self.sampling.slab,
-            Slabs::ByNeed => 0.5 * self.sampling.slab,
+            SlabMode::Even | SlabMode::Preintegrated => self.sampling.slab,
+            SlabMode::ByNeed => 0.5 * self.sampling.slab,
         }
     }
 
     /// Returns the thickness of the eye's thickest slabs, in smallest voxel edges.
     pub fn thickest_slab(&self) -> f64 {
-        if self.has_slabs_by_need() { self.sampling.slab } else { self.mean_slab() }
+        if self.has_adaptive_slabs() { self.sampling.slab } else { self.equivalent_even_slab() }
     }
 
     /// Returns true if the density reconstructed in a cell of 2³ voxels stays within the cell's known bounds
     /// ([`crate::data::CellBounds`]): not if voxels are classified before they are spread, nor with Gaussians much
     /// narrower or wider than the B-spline.
-    pub fn cells_are_bounds(&self) -> bool {
-        let is_bounded = |kernel: Kernel| match kernel {
-            Kernel::BSpline | Kernel::Prefiltered => true,
-            Kernel::Gaussian { sigma } => (sigma - BOUNDED_SIGMA).abs() <= SIGMA_TOLERANCE,
+    pub fn cell_bounds_hold(&self) -> bool {
+        let is_bounded = |kernel: ReconstructionKernel| match kernel {
+            ReconstructionKernel::BSpline | ReconstructionKernel::Prefiltered => true,
+            ReconstructionKernel::Gaussian { sigma } => (sigma - BOUNDED_SIGMA).abs() <= SIGMA_TOLERANCE,
         };
-        self.classification() == Classification::Post
+        self.classification() == ClassificationOrder::Post
             && is_bounded(self.sampling.kernel)
             && is_bounded(self.shadows.kernel)
     }
 
     /// Returns true if normals are computed from sheets.
     pub fn has_sheet_gradients(&self) -> bool {
-        self.sampling.gradients == Gradients::Sheets
+        self.sampling.gradients == GradientSource::Sheets
     }
 
     /// Returns true if normals are analytic gradients of the reconstruction: not if voxels are splatted and no
     /// density is sampled, and only for the B-spline, whose gradient is continuous.
     pub fn has_kernel_gradients(&self) -> bool {
-        let is_smooth = self.eye_kernel() == Kernel::BSpline;
-        self.sampling.gradients == Gradients::Kernel && is_smooth && !self.scatters()
+        let is_smooth = self.eye_kernel() == ReconstructionKernel::BSpline;
+        self.sampling.gradients == GradientSource::Kernel && is_smooth && !self.uses_scattering_engine()
     }
 
     /// Returns true if voxels are composited one by one, and never summed in sheets.
     pub fn composites_footprints(&self) -> bool {
-        self.scatters() && self.sampling.order == SheetOrder::EveryFootprint
+        self.uses_scattering_engine() && self.sampling.order == SheetOrder::EveryFootprint
     }
 
     /// Returns the opacity unit in scene units, safe to divide by.
-    fn unit_in_scene(&self, scene: &SceneSpace) -> f64 {
-        self.opacity_unit.in_scene(scene).max(1e-9)
+    fn opacity_unit_in_scene(&self, scene: &SceneSpace) -> f64 {
+        self.opacity_unit.scene_units(scene).max(1e-9)
     }
 
     /// Returns the eye's transfer function as a table over a value range, that of the shown volume
-    /// ([`crate::data::Volume::table_range`]). For labels, call it on the settings [as drawn](Self::as_drawn).
-    pub fn baked_eye(&self, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
-        self.transfer.bake(range, self.unit_in_scene(scene), 1.0)
+    /// ([`crate::data::Volume::table_range`]). For labels, call it on the settings [as drawn](Self::resolved_for).
+    pub fn bake_eye(&self, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
+        self.transfer.bake(range, self.opacity_unit_in_scene(scene), 1.0)
     }
 
-    /// Returns the lighting transfer function as a table over a value range, as [`Self::baked_eye`]. With coloured
+    /// Returns the lighting transfer function as a table over a value range, as [`Self::bake_eye`]. With coloured
     /// shadows, the table's colours are the shares of extinction that each colour of light meets.
-    pub fn baked_lighting(&self, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
+    pub fn bake_lighting(&self, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
         let function = if self.lighting.linked { &self.transfer } else { &self.lighting.curve };
-        let baked = function.bake(range, self.unit_in_scene(scene), self.lighting.scale);
-        if self.has_colored_shadows() { baked.transmitting(self.shadows.transmission) } else { baked }
+        let baked = function.bake(range, self.opacity_unit_in_scene(scene), self.lighting.scale);
+        if self.has_colored_shadows() {
+            baked.with_extinction_shares(self.shadows.transmission)
+        } else {
+            baked
+        }
     }
 }

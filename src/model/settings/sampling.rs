@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// Reconstruction kernel with which voxels are spread over space.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Kernel {
+pub enum ReconstructionKernel {
     /// Cubic B-spline: an exact partition of unity, within 2 % of a Gaussian of σ = 0.6 voxel.
     BSpline,
     /// Gaussian of the paper, truncated at two voxels and normalised.
@@ -21,14 +21,14 @@ pub enum Kernel {
 /// Number of points for the kernel's integral over a slab (Gauss–Legendre).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Quadrature {
+pub enum SlabQuadrature {
     /// One point in the middle of the slab.
     One,
     /// Two points, ± Δs/(2√3) from the middle.
     Two,
 }
 
-impl Quadrature {
+impl SlabQuadrature {
     /// Returns the offsets from the middle of the slab, in units of its thickness; weights are equal.
     pub fn offsets(self) -> &'static [f64] {
         // 1/(2√3)
@@ -43,7 +43,7 @@ impl Quadrature {
 /// Source of surface normals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Gradients {
+pub enum GradientSource {
     /// Central differences of the prefiltered volume around the sample: nearly the gradient of the B-spline.
     Volume,
     /// Exact gradient of the B-spline reconstruction; with other kernels, and with the scattering engine, as
@@ -56,7 +56,7 @@ pub enum Gradients {
 /// Rendering engine: fills sheets by gathering or by scattering.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Engine {
+pub enum RenderEngine {
     /// Gathering: every pixel, and every voxel of a light volume, sums the splats that reach it. The same sums as
     /// splatting, but faster.
     Gather,
@@ -68,7 +68,7 @@ pub enum Engine {
 /// Order of classification by the transfer function and interpolation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Classification {
+pub enum ClassificationOrder {
     /// Post-classification, of the sheets: sharp edges even with coarse voxels (P §3.5).
     Post,
     /// Pre-classification, of the voxels, whose colours and extinctions are then spread: as blurred as the kernel.
@@ -92,13 +92,13 @@ pub enum SheetOrder {
 /// Slab thickness: uniform, adaptive or pre-integrated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Slabs {
-    /// Uniform slabs of thickness [`Sampling::slab`].
+pub enum SlabMode {
+    /// Uniform slabs of thickness [`SamplingSettings::slab`].
     Even,
     /// Adaptive slabs: a quarter of that where a slab would contribute much to the ray, because normals and light
     /// change within a voxel, which would show as a weave.
     ByNeed,
-    /// Uniform slabs of thickness [`Sampling::slab`], with opacity integrated through each of its
+    /// Uniform slabs of thickness [`SamplingSettings::slab`], with opacity integrated through each of its
     /// [`PREINTEGRATED_STEPS`] steps from the densities at both ends (Engel, Kraus and Ertl, "High-quality
     /// pre-integrated volume rendering", 2001), and shaded once where that opacity lies: fast previews of thin parts
     /// without banding.
@@ -109,41 +109,41 @@ pub enum Slabs {
 pub const PREINTEGRATED_STEPS: u32 = 2;
 
 /// Largest number of parts into which an adaptive slab is divided.
-pub const THIN_SLABS: u32 = 4;
+pub const MAX_SLAB_PARTS: u32 = 4;
 
 /// Sampling of the eye's sheets, and the rendering engine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Sampling {
+pub struct SamplingSettings {
     /// Reconstruction kernel of the eye pass.
-    pub kernel: Kernel,
+    pub kernel: ReconstructionKernel,
     /// Thickness of slabs in smallest voxel edges; the largest one if they are adaptive.
     pub slab: f64,
     /// Uniform, adaptive or pre-integrated slabs.
-    pub slabs: Slabs,
+    pub slabs: SlabMode,
     /// Number of quadrature points per slab.
-    pub quadrature: Quadrature,
+    pub quadrature: SlabQuadrature,
     /// Source of normals; with the scattering engine, sheets are all that there is of the volume, so there normals
     /// come from sheets.
-    pub gradients: Gradients,
+    pub gradients: GradientSource,
     /// Order of classification and interpolation, for the sheets of lights, too.
-    pub classification: Classification,
+    pub classification: ClassificationOrder,
     /// Engine that fills the sheets, those of lights, too.
-    pub engine: Engine,
+    pub engine: RenderEngine,
     /// Compositing order of the scattering engine, for comparison with earlier work.
     pub order: SheetOrder,
 }
 
-impl Default for Sampling {
+impl Default for SamplingSettings {
     fn default() -> Self {
         Self {
-            kernel: Kernel::BSpline,
+            kernel: ReconstructionKernel::BSpline,
             slab: 1.0,
-            slabs: Slabs::Even,
-            quadrature: Quadrature::One,
-            gradients: Gradients::Volume,
-            classification: Classification::Post,
-            engine: Engine::Gather,
+            slabs: SlabMode::Even,
+            quadrature: SlabQuadrature::One,
+            gradients: GradientSource::Volume,
+            classification: ClassificationOrder::Post,
+            engine: RenderEngine::Gather,
             order: SheetOrder::ImageAligned,
         }
     }

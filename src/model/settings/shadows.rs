@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 pub const MAX_BIAS_VOXELS: f64 = 2.0;
 
 use crate::math::SceneSpace;
-use crate::model::{Kernel, Quadrature};
+use crate::model::{ReconstructionKernel, SlabQuadrature};
 
 /// Algorithm that computes the attenuated light at a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -38,7 +38,7 @@ impl ShadowAlgorithm {
 /// first slab on a ray to the light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Deposit {
+pub enum DepositMode {
     /// Transmittance in front of the slab: P eq. 7, 8 and 10 read literally; first order in the slab's thickness.
     Front,
     /// Mean transmittance over the slab, T·(1 − e^−τ)/τ; second order.
@@ -48,7 +48,7 @@ pub enum Deposit {
 /// Resolution of a light volume per axis relative to the data, from the finest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Resolution {
+pub enum LightVolumeResolution {
     /// Full resolution: one light voxel per data voxel.
     Full,
     /// Half resolution per axis: an eighth of the memory and time.
@@ -57,11 +57,11 @@ pub enum Resolution {
     Quarter,
 }
 
-impl Resolution {
+impl LightVolumeResolution {
     /// Returns this resolution, or a finer one if a volume of `dims` voxels needs it for `least` blocks along its
     /// longest edge.
     #[must_use]
-    pub fn with_blocks(self, dims: [usize; 3], least: u32) -> Self {
+    pub fn with_min_blocks(self, dims: [usize; 3], least: u32) -> Self {
         let longest = dims.into_iter().max().unwrap_or(1);
         let has_enough = |resolution: Self| longest.div_ceil(resolution.divisor()) >= least as usize;
         match self {
@@ -84,7 +84,7 @@ impl Resolution {
 /// Number format of a light volume's values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Precision {
+pub enum LightVolumePrecision {
     /// 16-bit floats: 11 significant bits, at full light as in deep shadow.
     Half,
     /// 8 bits per voxel, as in the paper: half the memory, 256 levels.
@@ -117,7 +117,7 @@ pub enum ReverseKernel {
 /// Length of the near-field ray: the last voxels before a sample, where a ray replaces the light volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum NearField {
+pub enum NearFieldRay {
     /// Light volume only, without a ray (P §3.5).
     Off,
     /// Short ray of four steps, three voxels long.
@@ -126,10 +126,10 @@ pub enum NearField {
     Long,
 }
 
-impl NearField {
+impl NearFieldRay {
     /// Returns the number of steps of the ray; their widths are ½ ½ 1 1 1½ 1½ 2 smallest voxel edges, and the last is
     /// longer by half a voxel of the light volume. Material close to a sample shades it most, and is blurred least.
-    pub fn steps(self) -> u32 {
+    pub fn step_count(self) -> u32 {
         match self {
             Self::Off => 0,
             Self::Short => 4,
@@ -141,7 +141,7 @@ impl NearField {
     /// because a light volume does not resolve what lies within one voxel.
     pub fn steps_within(self, length_voxels: f64) -> u32 {
         let within = |&steps: &u32| Self::length_voxels(steps) <= length_voxels;
-        (2..=self.steps()).rev().find(within).unwrap_or(2).min(self.steps())
+        (2..=self.step_count()).rev().find(within).unwrap_or(2).min(self.step_count())
     }
 
     /// Returns the length of the first `steps` steps in smallest voxel edges, without the extension of the last.
@@ -161,23 +161,23 @@ pub const MAX_LIGHT_SAMPLES: u32 = 64;
 /// Sampling of area lights: each is replaced by point lights that share one light volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct AreaShadows {
+pub struct AreaLightSampling {
     /// Number of sample points per light.
     pub samples: u32,
     /// Finest resolution of the light volume: penumbrae have no fine detail.
-    pub resolution: Resolution,
+    pub resolution: LightVolumeResolution,
 }
 
-impl Default for AreaShadows {
+impl Default for AreaLightSampling {
     fn default() -> Self {
-        Self { samples: MAX_LIGHT_SAMPLES, resolution: Resolution::Half }
+        Self { samples: MAX_LIGHT_SAMPLES, resolution: LightVolumeResolution::Half }
     }
 }
 
 /// Shadow settings, including the remedies against dark images (P §4).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Shadows {
+pub struct ShadowSettings {
     /// Algorithm that fills the light volume, or off.
     pub algorithm: ShadowAlgorithm,
     /// Shadow strength: 0 for no shadows, 1 for full ones.
@@ -200,25 +200,25 @@ pub struct Shadows {
     /// volume).
     pub first_touch: bool,
     /// Transmittance of a slab that a sheet deposits.
-    pub deposit: Deposit,
+    pub deposit: DepositMode,
     /// Kernel of the light pass.
-    pub kernel: Kernel,
+    pub kernel: ReconstructionKernel,
     /// Slab thickness of the light pass, in smallest edges of the light volume's voxels.
     pub slab: f64,
     /// Quadrature of the light pass.
-    pub quadrature: Quadrature,
+    pub quadrature: SlabQuadrature,
     /// Resolution of the light volumes.
-    pub resolution: Resolution,
+    pub resolution: LightVolumeResolution,
     /// Number format of the light volumes.
-    pub precision: Precision,
+    pub precision: LightVolumePrecision,
     /// Storage: one volume for each light, or one for all.
     pub storage: LightStorage,
     /// Kernel of the back-projection from sheets to voxels.
     pub reverse_kernel: ReverseKernel,
     /// Near-field ray that replaces the light volume close to a sample. The bias has no effect then.
-    pub near_field: NearField,
+    pub near_field: NearFieldRay,
     /// Sampling of area lights.
-    pub area: AreaShadows,
+    pub area: AreaLightSampling,
     /// Minimum number of blocks along the volume's longest edge for soft light, if the volume has as many voxels:
     /// light of area lights, of the sky, and bounced light. A volume of few voxels fills the image as much as a large
     /// one.
@@ -226,9 +226,9 @@ pub struct Shadows {
 }
 
 /// Largest minimum number of blocks, at any resolution.
-pub const MAX_LEAST_BLOCKS: u32 = 256;
+pub const MAX_MIN_BLOCKS: u32 = 256;
 
-impl Default for Shadows {
+impl Default for ShadowSettings {
     fn default() -> Self {
         Self {
             algorithm: ShadowAlgorithm::Splat,
@@ -240,26 +240,30 @@ impl Default for Shadows {
             transmission: 0.0,
             keep_balanced: false,
             first_touch: false,
-            deposit: Deposit::SlabMean,
-            kernel: Kernel::BSpline,
+            deposit: DepositMode::SlabMean,
+            kernel: ReconstructionKernel::BSpline,
             slab: 1.0,
-            quadrature: Quadrature::One,
-            resolution: Resolution::Full,
-            precision: Precision::Half,
+            quadrature: SlabQuadrature::One,
+            resolution: LightVolumeResolution::Full,
+            precision: LightVolumePrecision::Half,
             storage: LightStorage::Auto,
             reverse_kernel: ReverseKernel::Tent,
-            near_field: NearField::Short,
-            area: AreaShadows::default(),
+            near_field: NearFieldRay::Short,
+            area: AreaLightSampling::default(),
             // Number of blocks of a volume of 128³ voxels at quarter resolution.
             least_blocks: 32,
         }
     }
 }
 
-impl Shadows {
+impl ShadowSettings {
     /// Returns the resolution of soft light in a volume of `dims` voxels, if `resolution` is set.
-    pub fn soft(&self, resolution: Resolution, dims: [usize; 3]) -> Resolution {
-        resolution.with_blocks(dims, self.least_blocks)
+    pub fn soft_resolution(
+        &self,
+        resolution: LightVolumeResolution,
+        dims: [usize; 3],
+    ) -> LightVolumeResolution {
+        resolution.with_min_blocks(dims, self.least_blocks)
     }
 
     /// Returns the sampling distance of a ray to a light, in scene units: the slab's thickness.
@@ -274,14 +278,14 @@ mod tests {
 
     #[test]
     fn small_volumes_have_as_many_blocks_as_large_ones() {
-        let of = |longest: usize, resolution: Resolution, least| {
-            resolution.with_blocks([longest / 2, longest, 1], least)
+        let of = |longest: usize, resolution: LightVolumeResolution, least| {
+            resolution.with_min_blocks([longest / 2, longest, 1], least)
         };
-        assert_eq!(of(128, Resolution::Quarter, 32), Resolution::Quarter);
-        assert_eq!(of(124, Resolution::Quarter, 32), Resolution::Half);
-        assert_eq!(of(24, Resolution::Quarter, 32), Resolution::Full);
-        assert_eq!(of(24, Resolution::Quarter, 1), Resolution::Quarter);
-        assert_eq!(of(512, Resolution::Half, 32), Resolution::Half);
-        assert_eq!(of(512, Resolution::Full, 32), Resolution::Full);
+        assert_eq!(of(128, LightVolumeResolution::Quarter, 32), LightVolumeResolution::Quarter);
+        assert_eq!(of(124, LightVolumeResolution::Quarter, 32), LightVolumeResolution::Half);
+        assert_eq!(of(24, LightVolumeResolution::Quarter, 32), LightVolumeResolution::Full);
+        assert_eq!(of(24, LightVolumeResolution::Quarter, 1), LightVolumeResolution::Quarter);
+        assert_eq!(of(512, LightVolumeResolution::Half, 32), LightVolumeResolution::Half);
+        assert_eq!(of(512, LightVolumeResolution::Full, 32), LightVolumeResolution::Full);
     }
 }

@@ -79,7 +79,7 @@ pub const COLOR_MAPS: [ColorMap; 15] = [
 ];
 
 /// Minimum distance between control points, as a share of the range: a nearer stop gets no point of its own.
-const NEAREST: f64 = 0.02;
+const MIN_STOP_DISTANCE: f64 = 0.02;
 
 impl ColorMap {
     /// Returns the sRGB colour at a position from 0 to 1.
@@ -98,14 +98,14 @@ impl ColorMap {
 impl TransferFunction {
     /// Colours the visible values by a map, from the last invisible point to the last point, or in reverse. Opacities
     /// stay unchanged; points are added at the map's stops.
-    pub fn color_by(&mut self, map: &ColorMap, reversed: bool) {
+    pub fn apply_color_map(&mut self, map: &ColorMap, reversed: bool) {
         let Some((low, high)) = self.visible_range() else { return };
         let span = (high - low).max(1e-300);
         for stop in 0..=8 {
             let value = low + span * f64::from(stop) / 8.0;
-            let near = |point: &ControlPoint| (point.value - value).abs() <= NEAREST * span;
+            let near = |point: &ControlPoint| (point.value - value).abs() <= MIN_STOP_DISTANCE * span;
             if !self.points.iter().any(near) {
-                self.cut_at(value);
+                self.split_at(value);
             }
         }
         for point in &mut self.points {
@@ -121,11 +121,11 @@ impl TransferFunction {
     }
 
     /// Mirrors opacities and colours along the range of values of the points.
-    pub fn invert(&mut self) {
+    pub fn mirror(&mut self) {
         // A step, which holds until the next point, would have to hold since the previous one.
         for index in (0..self.points.len()).rev() {
             if self.points[index].easing == Easing::Step {
-                self.straighten(index);
+                self.linearise_segment(index);
             }
         }
         let (Some(first), Some(last)) = (self.points.first(), self.points.last()) else { return };
@@ -179,7 +179,7 @@ mod tests {
         let before = ramp();
         for reversed in [false, true] {
             let mut function = before.clone();
-            function.color_by(&COLOR_MAPS[0], reversed);
+            function.apply_color_map(&COLOR_MAPS[0], reversed);
             assert!(function.points.windows(2).all(|pair| pair[0].value <= pair[1].value));
             for i in 0..=60 {
                 let value = f64::from(i) * 5.0;
@@ -202,7 +202,7 @@ mod tests {
         function.points[1].opacity = 0.7;
         function.points[2].easing = Easing::Smooth;
         let before = function.clone();
-        function.invert();
+        function.mirror();
         for value in [10.0, 101.0, 150.0, 199.0, 230.0, 260.0] {
             let apart = (function.opacity_at(300.0 - value) - before.opacity_at(value)).abs();
             assert!(apart < 1e-9, "{value}: {apart}");
@@ -214,9 +214,9 @@ mod tests {
     fn inverting_twice_and_stretching_back_change_nothing() {
         let before = ramp();
         let mut function = before.clone();
-        function.invert();
+        function.mirror();
         assert_eq!(function.points[0].opacity, 0.9);
-        function.invert();
+        function.mirror();
         function.shift_and_stretch(20.0, 2.0);
         assert_eq!(function.points[0].value, 150.0 - 300.0 + 20.0);
         function.shift_and_stretch(-20.0, 1.0);

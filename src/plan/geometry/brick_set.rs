@@ -31,13 +31,13 @@ impl BrickSet {
     }
 
     /// Returns the difference of two sets on the same grid: members of this one that are not in the other.
-    pub fn without(&self, other: &Self) -> Self {
+    pub fn difference(&self, other: &Self) -> Self {
         let members = self.members.iter().zip(&other.members).map(|(a, b)| *a && !*b).collect();
         Self::new(self.dims, members)
     }
 
     /// Returns true if this set is a subset of the other, on the same grid.
-    pub fn is_within(&self, other: &Self) -> bool {
+    pub fn is_subset(&self, other: &Self) -> bool {
         self.dims == other.dims && self.members.iter().zip(&other.members).all(|(a, b)| !*a || *b)
     }
 
@@ -85,7 +85,7 @@ impl BrickSet {
         for (stride, length) in [(1, nx), (nx, ny), (nx * ny, nz)] {
             for start in 0..distances.len() {
                 if start / stride % length == 0 {
-                    sweep(&mut distances, start, stride, length);
+                    distance_transform_line(&mut distances, start, stride, length);
                 }
             }
         }
@@ -102,7 +102,7 @@ impl BrickSet {
 }
 
 /// Transforms one line of the separable Chebyshev distance: `out[i]` = min over j of max(`in[j]`, |i − j|).
-fn sweep(distances: &mut [u8], start: usize, stride: usize, length: usize) {
+fn distance_transform_line(distances: &mut [u8], start: usize, stride: usize, length: usize) {
     let line: Vec<u8> = (0..length).map(|i| distances[start + i * stride]).collect();
     if line.iter().all(|&d| d == 255) || line.iter().all(|&d| d == 0) {
         return;
@@ -157,8 +157,8 @@ mod tests {
         assert_eq!(fine.dilated(1).positions().count(), 2 * 2 * 2);
         let coarse = fine.coarsened(2, [3, 3, 3]);
         assert_eq!(coarse.positions().collect::<Vec<_>>(), [[2, 0, 0]]);
-        assert!(fine.is_within(&coarse.refined(2, [5, 5, 5])));
-        assert!(!coarse.refined(2, [5, 5, 5]).is_within(&fine));
-        assert_eq!(fine.dilated(1).without(&fine).positions().count(), 7);
+        assert!(fine.is_subset(&coarse.refined(2, [5, 5, 5])));
+        assert!(!coarse.refined(2, [5, 5, 5]).is_subset(&fine));
+        assert_eq!(fine.dilated(1).difference(&fine).positions().count(), 7);
     }
 }

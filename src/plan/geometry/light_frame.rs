@@ -3,9 +3,9 @@
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
-use super::sheet_frame::{Placement, SheetFrame};
+use super::sheet_frame::{ProjectionPlacement, SheetFrame};
 use crate::math::SceneSpace;
-use crate::model::{LightKind, SceneLight, Shadows};
+use crate::model::{LightGeometry, SceneLight, ShadowSettings};
 
 /// Distance in radii of the volume below which a perspective light is split into six views: beyond it, the volume
 /// fits a cone of ± asin(1/1.5) = 42°, no wider than one face of a cube.
@@ -59,7 +59,7 @@ pub struct SheetPosition {
 
 impl LightView {
     /// Projects a point in scene space; `None` if another view covers it or it lies in the plane of the light.
-    pub fn position(&self, point: DVec3) -> Option<SheetPosition> {
+    pub fn project(&self, point: DVec3) -> Option<SheetPosition> {
         let local = self.axes.transpose() * (point - self.anchor);
         let spread = 1.0 + local.z * self.frame.inverse_distance;
         if self.cube_face {
@@ -103,18 +103,18 @@ impl LightView {
 }
 
 /// Returns the views of a light over a scene, with the pitch, slabs and resolution that `shadows` specifies.
-pub fn light_views(light: &SceneLight, shadows: &Shadows, scene: &SceneSpace) -> Vec<LightView> {
+pub fn light_views(light: &SceneLight, shadows: &ShadowSettings, scene: &SceneSpace) -> Vec<LightView> {
     let radius = scene.support_radius();
     let edge = (scene.smallest_edge() * shadows.resolution.divisor() as f64).max(2.0 * radius / MAX_PIXELS);
     let position = DVec3::from(light.position);
     match light.kind {
-        LightKind::Parallel => {
+        LightGeometry::Parallel => {
             vec![outside_view(scene, -light.direction(), 0.0, edge, shadows)]
         }
-        LightKind::Perspective if position.length() >= SPLIT_RADII * radius => {
+        LightGeometry::Perspective if position.length() >= SPLIT_RADII * radius => {
             vec![outside_view(scene, -position / position.length(), 1.0 / position.length(), edge, shadows)]
         }
-        LightKind::Perspective => cube_views(scene, position, edge, shadows.slab),
+        LightGeometry::Perspective => cube_views(scene, position, edge, shadows.slab),
     }
 }
 
@@ -124,7 +124,7 @@ fn outside_view(
     forward: DVec3,
     inverse_distance: f64,
     edge: f64,
-    shadows: &Shadows,
+    shadows: &ShadowSettings,
 ) -> LightView {
     let axes = axes_along(forward);
     let pixel_of = |point: DVec3| {
@@ -138,7 +138,7 @@ fn outside_view(
     let low = (pixels.iter().fold(DVec2::INFINITY, |low, &pixel| low.min(pixel)) - row).floor() + row;
     let high = (pixels.iter().fold(DVec2::NEG_INFINITY, |high, &pixel| high.max(pixel)) - row).ceil() + row;
     let size = (high - low).round() + 1.0;
-    let place = Placement {
+    let place = ProjectionPlacement {
         axes,
         anchor: DVec3::ZERO,
         inverse_distance,
@@ -148,7 +148,7 @@ fn outside_view(
         slab: shadows.slab * edge,
         near: f64::NEG_INFINITY,
     };
-    view(scene, &place, false)
+    make_view(scene, &place, false)
 }
 
 /// Returns the centre of the light volume's voxel next to the middle, in scene space: half a voxel off if their
@@ -174,7 +174,7 @@ fn cube_views(scene: &SceneSpace, position: DVec3, edge: f64, slab: f64) -> Vec<
     faces
         .into_iter()
         .map(|forward| {
-            let place = Placement {
+            let place = ProjectionPlacement {
                 axes: axes_along(forward),
                 anchor: position + forward * anchor_distance,
                 inverse_distance: 1.0 / anchor_distance,
@@ -185,13 +185,13 @@ fn cube_views(scene: &SceneSpace, position: DVec3, edge: f64, slab: f64) -> Vec<
                 // Nothing behind the light is sampled.
                 near: -anchor_distance,
             };
-            view(scene, &place, true)
+            make_view(scene, &place, true)
         })
         .filter(|view| view.frame.slab_count > 0)
         .collect()
 }
 
-fn view(scene: &SceneSpace, place: &Placement, cube_face: bool) -> LightView {
+fn make_view(scene: &SceneSpace, place: &ProjectionPlacement, cube_face: bool) -> LightView {
     LightView {
         frame: SheetFrame::new(scene, place),
         axes: place.axes,
@@ -223,22 +223,26 @@ mod tests {
         SceneSpace::new([40, 30, 20], DAffine3::from_scale(DVec3::new(1.0, 1.2, 2.0)))
     }
 
-    fn views(kind: LightKind, position: [f64; 3]) -> Vec<LightView> {
-        light_views(&SceneLight { kind, position, ..SceneLight::default() }, &Shadows::default(), &scene())
+    fn views(kind: LightGeometry, position: [f64; 3]) -> Vec<LightView> {
+        light_views(
+            &SceneLight { kind, position, ..SceneLight::default() },
+            &ShadowSettings::default(),
+            &scene(),
+        )
     }
 
     #[test]
     fn positions_invert_rays() {
         for (kind, position) in [
-            (LightKind::Parallel, [1.0, 2.0, 3.0]),
-            (LightKind::Perspective, [1.0, 2.0, 3.0]),
-            (LightKind::Perspective, [0.1, 0.2, 0.0]),
+            (LightGeometry::Parallel, [1.0, 2.0, 3.0]),
+            (LightGeometry::Perspective, [1.0, 2.0, 3.0]),
+            (LightGeometry::Perspective, [0.1, 0.2, 0.0]),
         ] {
             for view in views(kind, position) {
                 let (i, j, k) =
                     (view.frame.size[0] as f64 / 2.0 + 1.0, view.frame.size[1] as f64 / 2.0 - 2.0, 7.0);
                 let point = view.frame.point(i, j, view.frame.depth_of(k));
-                let found = view.position(scene().scene_from_index.transform_point3(point)).unwrap();
+                let found = view.project(scene().scene_from_index.transform_point3(point)).unwrap();
                 assert!((found.pixel - DVec2::new(i, j)).length() < 1e-9, "{found:?}");
                 assert!((found.slab - k).abs() < 1e-9, "{found:?}");
             }
@@ -248,9 +252,9 @@ mod tests {
     #[test]
     fn every_voxel_has_room_for_its_kernel() {
         for (kind, position) in [
-            (LightKind::Parallel, [0.3, -2.0, 1.0]),
-            (LightKind::Perspective, [2.0, 2.0, 1.0]),
-            (LightKind::Perspective, [0.2, 0.1, 0.3]),
+            (LightGeometry::Parallel, [0.3, -2.0, 1.0]),
+            (LightGeometry::Perspective, [2.0, 2.0, 1.0]),
+            (LightGeometry::Perspective, [0.2, 0.1, 0.3]),
         ] {
             let views = views(kind, position);
             let [nx, ny, nz] = scene().dims;
@@ -260,7 +264,7 @@ mod tests {
                         let voxel = DVec3::new(x as f64, y as f64, z as f64);
                         let point = scene().scene_from_index.transform_point3(voxel);
                         let owners: Vec<_> =
-                            views.iter().filter_map(|v| Some((v, v.position(point)?))).collect();
+                            views.iter().filter_map(|v| Some((v, v.project(point)?))).collect();
                         assert!(!owners.is_empty(), "nobody lights {voxel}");
                         for (view, at) in owners {
                             let reach = 2.0 * at.kernel_pixels;
@@ -280,18 +284,18 @@ mod tests {
         let nearest = SPLIT_RADII * scene().support_radius();
         for direction in [DVec3::X, DVec3::Y, DVec3::new(1.0, 1.0, 1.0), DVec3::new(-1.0, 2.0, 0.3)] {
             let position = (direction.normalize() * nearest * 1.000_001).to_array();
-            for view in views(LightKind::Perspective, position) {
+            for view in views(LightGeometry::Perspective, position) {
                 assert!(view.kernel_is_narrow(), "{position:?}");
             }
         }
-        assert!(!views(LightKind::Perspective, [0.1, 0.2, 0.0])[0].kernel_is_narrow());
+        assert!(!views(LightGeometry::Perspective, [0.1, 0.2, 0.0])[0].kernel_is_narrow());
     }
 
     #[test]
     fn flat_voxels_do_not_need_endless_sheets() {
         let flat = SceneSpace::new([10, 10, 400], DAffine3::from_scale(DVec3::new(0.01, 0.01, 5.0)));
         let light = SceneLight { position: [1.0, 1.0, 1.0], ..SceneLight::default() };
-        for view in light_views(&light, &Shadows::default(), &flat) {
+        for view in light_views(&light, &ShadowSettings::default(), &flat) {
             assert!(view.frame.size.iter().all(|&n| n <= 2048), "{:?}", view.frame.size);
             assert!(view.frame.slab_count <= 2048);
         }

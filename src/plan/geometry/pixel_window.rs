@@ -21,7 +21,7 @@ impl From<[u32; 2]> for PixelWindow {
 impl PixelWindow {
     /// Returns the same part of a supersampled picture, with `samples` pixels for each pixel along an edge.
     #[must_use]
-    pub fn finer(self, samples: u32) -> Self {
+    pub fn supersampled(self, samples: u32) -> Self {
         let finer = |pixels: [u32; 2]| pixels.map(|n| n * samples);
         Self { whole: finer(self.whole), first: finer(self.first), size: finer(self.size) }
     }
@@ -81,7 +81,7 @@ mod tests {
     #[test]
     fn finer_parts_lie_where_they_lay() {
         let part = PixelWindow { whole: [10, 8], first: [4, 2], size: [3, 1] };
-        let finer = part.finer(2);
+        let finer = part.supersampled(2);
         assert_eq!(finer, PixelWindow { whole: [20, 16], first: [8, 4], size: [6, 2] });
         let wider = part.widened(3);
         assert_eq!(wider, PixelWindow { whole: [10, 8], first: [1, 0], size: [9, 6] });

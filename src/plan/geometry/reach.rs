@@ -2,7 +2,7 @@
 
 use crate::data::BRICK_EDGE;
 use crate::math::SceneSpace;
-use crate::model::{Quadrature, Shadows};
+use crate::model::{ShadowSettings, SlabQuadrature};
 use crate::plan::{LightView, SheetFrame};
 
 /// Edge of a cell, in voxels.
@@ -29,13 +29,13 @@ pub(crate) fn preview_stretch_reach(level: f64) -> u8 {
 
 /// Returns the reach of samples that are means over a slab of `slab` scene units: the distance of the quadrature
 /// points from its middle.
-pub fn slab_reach(scene: &SceneSpace, slab: f64, obliquity: f64, quadrature: Quadrature) -> u8 {
+pub fn slab_reach(scene: &SceneSpace, slab: f64, obliquity: f64, quadrature: SlabQuadrature) -> u8 {
     let farthest = quadrature.offsets().iter().fold(0.0_f64, |far, offset| far.max(offset.abs()));
     in_cells(farthest * slab * obliquity / scene.smallest_edge())
 }
 
 /// Returns the reach of a frame's samples, in a preview or a full picture.
-pub fn sample_reach(frame: &SheetFrame, scene: &SceneSpace, quadrature: Quadrature, preview: bool) -> u8 {
+pub fn sample_reach(frame: &SheetFrame, scene: &SceneSpace, quadrature: SlabQuadrature, preview: bool) -> u8 {
     let [width, height] = frame.size.map(f64::from);
     let corners = [(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)];
     let obliquity = corners.map(|(i, j)| frame.obliquity(i, j)).into_iter().fold(1.0, f64::max);
@@ -45,7 +45,7 @@ pub fn sample_reach(frame: &SheetFrame, scene: &SceneSpace, quadrature: Quadratu
 }
 
 /// Returns the reach of samples along rays to lights, whose kernels are not stretched.
-pub fn ray_reach(shadows: &Shadows, scene: &SceneSpace) -> u8 {
+pub fn ray_reach(shadows: &ShadowSettings, scene: &SceneSpace) -> u8 {
     slab_reach(scene, shadows.ray_step(scene), 1.0, shadows.quadrature)
 }
 
@@ -105,8 +105,8 @@ mod tests {
         assert_eq!([0.0, 0.1, 2.0, 2.1].map(bias_reach), [0, 1, 1, 2]);
         let scene = SceneSpace::new([9; 3], DAffine3::IDENTITY);
         let slab = 8.0 * scene.smallest_edge();
-        assert_eq!(slab_reach(&scene, slab, 1.0, Quadrature::One), 0);
+        assert_eq!(slab_reach(&scene, slab, 1.0, SlabQuadrature::One), 0);
         // ± 0.289 × 8 voxels are 2.3 voxels.
-        assert_eq!(slab_reach(&scene, slab, 1.0, Quadrature::Two), 2);
+        assert_eq!(slab_reach(&scene, slab, 1.0, SlabQuadrature::Two), 2);
     }
 }

@@ -66,7 +66,7 @@ pub struct SheetFrame {
 }
 
 /// Placement of a projection in the scene: the parameters of [`SheetFrame::new`].
-pub(crate) struct Placement {
+pub(crate) struct ProjectionPlacement {
     /// Columns: right, down and forward (away from eye or light), unit vectors in scene space.
     pub axes: DMat3,
     /// Point on the axis, on the anchor plane, in scene space.
@@ -88,7 +88,7 @@ pub(crate) struct Placement {
 impl SheetFrame {
     /// Computes the rays, and covers all material of the scene with slabs. Slab faces lie at whole multiples of the
     /// thickness from the anchor, so that moving the eye does not shift their phase.
-    pub(crate) fn new(scene: &SceneSpace, place: &Placement) -> Self {
+    pub(crate) fn new(scene: &SceneSpace, place: &ProjectionPlacement) -> Self {
         let to_index = &scene.index_from_scene;
         let [right, down, forward] = [place.axes.x_axis, place.axes.y_axis, place.axes.z_axis];
         let step = |axis: DVec3| to_index.transform_vector3(axis * place.pitch);
@@ -127,7 +127,7 @@ impl SheetFrame {
     }
 
     /// Returns the stack with each slab divided into `parts` slabs.
-    pub(crate) fn divided(self, parts: u32) -> Self {
+    pub(crate) fn with_divided_slabs(self, parts: u32) -> Self {
         Self { slab: self.slab / f64::from(parts), slab_count: self.slab_count * parts, ..self }
     }
 

@@ -10,7 +10,7 @@ pub struct SliceOrder {
     /// Index of the first slice.
     pub first: usize,
     /// Step from slice to slice: +1 or −1.
-    pub step: i32,
+    pub direction: i32,
     /// Number of slices along the axis.
     pub count: u32,
 }
@@ -24,12 +24,12 @@ impl SliceOrder {
             (1..3).fold(0, |best, axis| if forward[axis].abs() > forward[best].abs() { axis } else { best });
         let count = dims[axis];
         let (first, step) = if forward[axis] < 0.0 { (count - 1, -1) } else { (0, 1) };
-        Self { axis, first, step, count: count as u32 }
+        Self { axis, first, direction: step, count: count as u32 }
     }
 
     /// Returns the index of the k-th slice in this order.
     pub fn slice(&self, k: u32) -> usize {
-        (self.first as i64 + i64::from(self.step) * i64::from(k)) as usize
+        (self.first as i64 + i64::from(self.direction) * i64::from(k)) as usize
     }
 }
 
@@ -54,9 +54,9 @@ mod tests {
             SliceOrder::new(&eye_frame(&camera, &scene, [32, 24], 1.0), scene.dims)
         };
         // From +x, the highest x comes first.
-        assert_eq!(order(44.0), SliceOrder { axis: 0, first: 19, step: -1, count: 20 });
-        assert_eq!(order(46.0), SliceOrder { axis: 1, first: 15, step: -1, count: 16 });
-        assert_eq!(order(-91.0), SliceOrder { axis: 1, first: 0, step: 1, count: 16 });
+        assert_eq!(order(44.0), SliceOrder { axis: 0, first: 19, direction: -1, count: 20 });
+        assert_eq!(order(46.0), SliceOrder { axis: 1, first: 15, direction: -1, count: 16 });
+        assert_eq!(order(-91.0), SliceOrder { axis: 1, first: 0, direction: 1, count: 16 });
         assert_eq!(order(-91.0).slice(3), 3);
         assert_eq!(order(46.0).slice(3), 12);
     }

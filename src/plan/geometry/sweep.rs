@@ -56,7 +56,7 @@ pub struct SweepFrame {
     /// Grid axis across which the slices lie: the one along which the light advances fastest.
     pub axis: usize,
     /// True if light travels in the positive direction of that axis.
-    pub rises: bool,
+    pub is_ascending: bool,
     /// Number of blocks along x, y and z.
     pub dims: [usize; 3],
     /// Displacement of a ray from slice to slice, in blocks along the two axes that follow `axis` cyclically.
@@ -89,7 +89,7 @@ impl SweepFrame {
             // One more ray to interpolate with.
             (end.ceil() as i32 - first[side] + 2) as u32
         });
-        Self { towards, axis, rises: along[axis] < 0.0, dims, drift: drift.into(), first, size, step }
+        Self { towards, axis, is_ascending: along[axis] < 0.0, dims, drift: drift.into(), first, size, step }
     }
 
     /// Returns the number of slices.
@@ -98,10 +98,10 @@ impl SweepFrame {
     }
 
     /// Returns the block coordinates of a position in a slice.
-    pub fn block(&self, slice: f64, across: DVec2) -> DVec3 {
+    pub fn block_position(&self, slice: f64, across: DVec2) -> DVec3 {
         let last = self.slices() as f64 - 1.0;
         let mut at = [0.0; 3];
-        at[self.axis] = if self.rises { slice } else { last - slice };
+        at[self.axis] = if self.is_ascending { slice } else { last - slice };
         at[(self.axis + 1) % 3] = across.x;
         at[(self.axis + 2) % 3] = across.y;
         at.into()
@@ -109,16 +109,16 @@ impl SweepFrame {
 
     /// Returns the slice coordinate of a position in blocks, which may lie between slices and outside the grid, and
     /// its position across.
-    pub fn along(&self, block: DVec3) -> (f64, DVec2) {
+    pub fn slice_position(&self, block: DVec3) -> (f64, DVec2) {
         let along = block[self.axis];
-        let slice = if self.rises { along } else { self.slices() as f64 - 1.0 - along };
+        let slice = if self.is_ascending { along } else { self.slices() as f64 - 1.0 - along };
         (slice, DVec2::new(block[(self.axis + 1) % 3], block[(self.axis + 2) % 3]))
     }
 
     /// Returns the slice coordinate of a position in blocks, which may lie between slices and outside the grid, and
     /// its ray coordinates in that slice.
-    pub fn place(&self, block: DVec3) -> (f64, DVec2) {
-        let (slice, across) = self.along(block);
+    pub fn ray_position(&self, block: DVec3) -> (f64, DVec2) {
+        let (slice, across) = self.slice_position(block);
         (slice, across - self.drift * slice - DVec2::new(self.first[0].into(), self.first[1].into()))
     }
 
@@ -181,14 +181,14 @@ mod tests {
                 let [nx, ny, nz] = frame.dims;
                 for block in (0..nx * ny * nz).map(|at| [at % nx, at / nx % ny, at / (nx * ny)]) {
                     let wanted = DVec3::from(block.map(|at| at as f64));
-                    let (slice, ray) = frame.place(wanted);
+                    let (slice, ray) = frame.ray_position(wanted);
                     assert!(ray.min_element() >= -1e-9, "{ray}");
                     let next = ray.floor() + 1.0;
                     assert!(next.x < f64::from(frame.size[0]) && next.y < f64::from(frame.size[1]), "{ray}");
                     // Converts back.
                     let nearest = [ray.x.floor() as u32, ray.y.floor() as u32];
                     let across = frame.crossing(nearest, slice as usize) + ray.fract();
-                    let found = frame.block(slice, across);
+                    let found = frame.block_position(slice, across);
                     assert!((found - wanted).length() < 1e-9, "{found} {wanted}");
                 }
             }
@@ -200,7 +200,7 @@ mod tests {
         let scene = SceneSpace::new([16, 16, 16], DAffine3::IDENTITY);
         let slanting = DVec3::new(3.0, 0.0, 4.0).normalize();
         let frame = SweepFrame::new(&scene, 2, slanting);
-        assert_eq!((frame.axis, frame.rises), (2, false));
+        assert_eq!((frame.axis, frame.is_ascending), (2, false));
         // Two voxels are a quarter of half the edge.
         assert!((frame.step - 0.25 / 0.8).abs() < 1e-12, "{}", frame.step);
         assert!((frame.drift - DVec2::new(-0.75, 0.0)).length() < 1e-12, "{}", frame.drift);

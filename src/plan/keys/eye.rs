@@ -2,15 +2,16 @@
 
 use super::bounces::BouncesKey;
 use super::light::LightKey;
-use super::lit_lights::{Attenuation, LitLights};
-use super::received::{LightLook, ReceivedLight};
-use super::sky::{SkyKey, SkyLook};
+use super::light_lookup::{LightAppearance, LightLookupKey};
+use super::lit_lights::{ActiveLights, AttenuationMethod};
+use super::sky::{SkyAppearance, SkyKey};
 use super::table::{EyeTableKey, OpacityKey, TransmissionKey};
 use crate::model::{
-    Camera, Classification, Depth, Engine, Floor, Gradients, Kernel, Length, Quadrature, Remains, Sampling,
-    Settings, Shading, ShadowAlgorithm, Shadows, SheetOrder, Slabs,
+    Camera, ClassificationOrder, ClippedPart, FloorSettings, GradientSource, OpacityLength, PhongShading,
+    PixelFormat, ReconstructionKernel, RenderEngine, SamplingSettings, Settings, ShadowAlgorithm,
+    ShadowSettings, SheetOrder, SlabMode, SlabQuadrature,
 };
-use crate::plan::{CombinedKey, PixelWindow, RenderOptions, Request, VolumeKey};
+use crate::plan::{CombinedKey, PixelWindow, RenderOptions, RenderRequest, VolumeKey};
 
 /// Inputs of the linear picture of the eye pass.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,32 +20,32 @@ pub struct EyeKey {
     window: PixelWindow,
     camera: Camera,
     curve: EyeTableKey,
-    shading: Shading,
+    shading: PhongShading,
     /// Length to which gradients of surfaces refer.
-    unit: Length,
+    unit: OpacityLength,
     sampling: SamplingKey,
-    seen: Remains,
-    shading_cut: Remains,
-    received: ReceivedLight,
+    seen: ClippedPart,
+    shading_cut: ClippedPart,
+    received: LightLookupKey,
     lights: Vec<EyeLightKey>,
     /// Combined diffuse light of all shadowed lights, which are then absent from `lights`.
     combined: Option<CombinedKey>,
     /// Sky, and the volume of its visibility.
-    sky: Option<SkyLook>,
+    sky: Option<SkyAppearance>,
     sky_volume: Option<SkyKey>,
     /// Volume of bounced light with the factor of its display, and the anisotropy of the first scattering.
     bounces: Option<(BouncesKey, f64)>,
     anisotropy: f64,
     /// Inputs of shadow rays, if samples cast any.
-    rays: Option<RaysKey>,
+    rays: Option<ShadowRaysKey>,
     options: RenderOptions,
 }
 
 /// Look of a light, and its attenuation.
 #[derive(Debug, Clone, PartialEq)]
 struct EyeLightKey {
-    look: LightLook,
-    attenuation: Attenuation,
+    look: LightAppearance,
+    attenuation: AttenuationMethod,
     /// Key of its attenuation volume, if it has one.
     volume: Option<LightKey>,
 }
@@ -52,41 +53,41 @@ struct EyeLightKey {
 /// Inputs of the sampling of sheets.
 #[derive(Debug, Clone, PartialEq)]
 struct SamplingKey {
-    kernel: Kernel,
+    kernel: ReconstructionKernel,
     slab: f64,
-    slabs: Slabs,
-    quadrature: Quadrature,
-    gradients: Gradients,
-    classification: Classification,
-    engine: Engine,
+    slabs: SlabMode,
+    quadrature: SlabQuadrature,
+    gradients: GradientSource,
+    classification: ClassificationOrder,
+    engine: RenderEngine,
     /// Sheet order, if the scattering engine is used.
     order: Option<SheetOrder>,
 }
 
 /// Inputs of shadow rays from samples or from the floor to lights.
 #[derive(Debug, Clone, PartialEq)]
-struct RaysKey {
+struct ShadowRaysKey {
     opacity: OpacityKey,
     transmission: Option<TransmissionKey>,
-    classification: Classification,
-    shadows: Shadows,
+    classification: ClassificationOrder,
+    shadows: ShadowSettings,
 }
 
 impl SamplingKey {
-    fn of(settings: &Settings) -> Self {
-        let Sampling { kernel, slab, slabs, quadrature, gradients, classification: _, engine, order } =
+    fn new(settings: &Settings) -> Self {
+        let SamplingSettings { kernel, slab, slabs, quadrature, gradients, classification: _, engine, order } =
             settings.sampling;
         let classification = settings.classification();
-        let order = settings.scatters().then_some(order);
+        let order = settings.uses_scattering_engine().then_some(order);
         Self { kernel, slab, slabs, quadrature, gradients, classification, engine, order }
     }
 }
 
-impl RaysKey {
-    fn of(settings: &Settings) -> Self {
+impl ShadowRaysKey {
+    fn new(settings: &Settings) -> Self {
         Self {
-            opacity: OpacityKey::of(settings),
-            transmission: TransmissionKey::of(settings),
+            opacity: OpacityKey::new(settings),
+            transmission: TransmissionKey::new(settings),
             classification: settings.sampling.classification,
             shadows: settings.shadows.clone(),
         }
@@ -96,14 +97,14 @@ impl RaysKey {
 impl EyeKey {
     /// Creates the key of the picture that is made with these light volumes, one for each light of the settings that
     /// has any, or with their combination; and with these volumes of sky visibility and of bounced light.
-    pub fn of(
-        request: &Request,
+    pub fn new(
+        request: &RenderRequest,
         options: &RenderOptions,
         volumes: &[Option<LightKey>],
         combined: Option<&CombinedKey>,
         (sky_volume, bounces): (Option<&SkyKey>, Option<&BouncesKey>),
     ) -> Self {
-        let Request { volume: _, settings, size: _, coarse: _ } = request;
+        let RenderRequest { volume: _, settings, size: _, preview_resolution: _ } = request;
         let Settings {
             schema: _,
             camera,
@@ -127,45 +128,45 @@ impl EyeKey {
             // Part of the identity of the corrected volume.
             volume: _,
         } = settings;
-        let lit = LitLights::of(settings);
+        let lit = ActiveLights::from_settings(settings);
         let own = if combined.is_some() { lit.unshadowed() } else { lit.all() };
         let lights = own.iter().map(|lit| EyeLightKey {
-            look: LightLook::of(&lit.light),
+            look: LightAppearance::new(&lit.light),
             attenuation: lit.attenuation,
             volume: volumes.get(lit.index).cloned().flatten(),
         });
         let casts_rays = shadows.algorithm == ShadowAlgorithm::Direct;
         Self {
-            volume: request.shown_volume(),
-            window: options.window(request),
+            volume: request.volume_key(),
+            window: options.sample_window(request),
             camera: camera.clone(),
-            curve: EyeTableKey::of(settings),
+            curve: EyeTableKey::new(settings),
             shading: shading.clone(),
             unit: *opacity_unit,
-            sampling: SamplingKey::of(settings),
-            seen: cuts.seen(),
-            shading_cut: cuts.shading(),
-            received: ReceivedLight::of(settings),
+            sampling: SamplingKey::new(settings),
+            seen: cuts.visible_part(),
+            shading_cut: cuts.shadowing_part(),
+            received: LightLookupKey::new(settings),
             lights: lights.collect(),
             combined: combined.cloned(),
-            sky: SkyLook::of(settings),
+            sky: SkyAppearance::new(settings),
             sky_volume: sky_volume.cloned(),
             bounces: bounces.map(|key| (key.clone(), scattering.strength * scattering.albedo)),
             anisotropy: scattering.anisotropy,
-            rays: casts_rays.then(|| RaysKey::of(settings)),
-            options: computing(options),
+            rays: casts_rays.then(|| ShadowRaysKey::new(settings)),
+            options: without_display_options(options),
         }
     }
 }
 
 /// Returns the options that affect the computation of light, with those of display and scheduling reset.
-fn computing(options: &RenderOptions) -> RenderOptions {
+fn without_display_options(options: &RenderOptions) -> RenderOptions {
     RenderOptions {
         transparent: false,
         exposure: 1.0,
         timed: false,
         light_parts: 1,
-        depth: Depth::Eight,
+        depth: PixelFormat::Eight,
         ..options.clone()
     }
 }
@@ -175,21 +176,21 @@ fn computing(options: &RenderOptions) -> RenderOptions {
 pub struct FloorKey {
     /// Volume in front of the floor, and its lights.
     eye: EyeKey,
-    floor: Floor,
-    rays: RaysKey,
+    floor: FloorSettings,
+    rays: ShadowRaysKey,
     /// Lights may be combined for the eye, but not for the floor.
-    lights: LitLights,
+    lights: ActiveLights,
 }
 
 impl FloorKey {
     /// Creates the key of the floor under a picture; `None` if there is no floor.
-    pub fn of(request: &Request, eye: &EyeKey) -> Option<Self> {
+    pub fn new(request: &RenderRequest, eye: &EyeKey) -> Option<Self> {
         let settings = &request.settings;
         settings.floor.on.then(|| Self {
             eye: eye.clone(),
             floor: settings.floor.clone(),
-            rays: RaysKey::of(settings),
-            lights: LitLights::of(settings),
+            rays: ShadowRaysKey::new(settings),
+            lights: ActiveLights::from_settings(settings),
         })
     }
 }

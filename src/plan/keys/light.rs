@@ -2,38 +2,39 @@
 
 use super::table::{OpacityKey, TransmissionKey};
 use crate::model::{
-    AreaShadows, Classification, Deposit, Engine, Hood, Kernel, LightArea, LightKind, Precision, Quadrature,
-    Remains, Resolution, ReverseKernel, Sampling, SceneLight, Settings, ShadowAlgorithm, Shadows,
+    AreaLightSampling, ClassificationOrder, ClippedPart, DepositMode, LightArea, LightGeometry,
+    LightVolumePrecision, LightVolumeResolution, ReconstructionKernel, RenderEngine, ReverseKernel,
+    SamplingSettings, SceneLight, Settings, ShadowAlgorithm, ShadowSettings, SlabQuadrature, Spotlight,
 };
-use crate::plan::{Request, VolumeKey};
+use crate::plan::{RenderRequest, VolumeKey};
 
 /// Inputs of the attenuation volume of one light.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LightKey {
     volume: VolumeKey,
-    kind: LightKind,
+    kind: LightGeometry,
     /// Position, or for a parallel light the direction, so that moving it outwards changes nothing.
-    placed: [f64; 3],
+    position_or_direction: [f64; 3],
     /// Angles of the hood in degrees, if there is one.
     hood_deg: Option<[f64; 2]>,
     density_scale: f64,
     /// Area of the light, and the number of points on it; `None` for a point light.
     area: Option<(LightArea, u32)>,
     algorithm: ShadowAlgorithm,
-    classification: Classification,
-    engine: Engine,
+    classification: ClassificationOrder,
+    engine: RenderEngine,
     opacity: OpacityKey,
     transmission: Option<TransmissionKey>,
     first_touch: bool,
-    deposit: Deposit,
-    kernel: Kernel,
+    deposit: DepositMode,
+    kernel: ReconstructionKernel,
     /// Reverse kernel, which only the gathering engine has.
     reverse_kernel: ReverseKernel,
     slab: f64,
-    quadrature: Quadrature,
-    resolution: Resolution,
-    precision: Precision,
-    shading_cut: Remains,
+    quadrature: SlabQuadrature,
+    resolution: LightVolumeResolution,
+    precision: LightVolumePrecision,
+    shading_cut: ClippedPart,
 }
 
 /// Maximum number of points on an area light in previews.
@@ -42,7 +43,7 @@ const PREVIEW_SAMPLES: u32 = 16;
 impl LightKey {
     /// Returns the key of this light's volume for a preview, at a resolution that is no finer.
     #[must_use]
-    pub fn coarse(&self, resolution: Resolution) -> Self {
+    pub fn for_preview(&self, resolution: LightVolumeResolution) -> Self {
         let area = self.area.map(|(area, samples)| (area, samples.min(PREVIEW_SAMPLES)));
         Self { resolution: resolution.max(self.resolution), area, ..self.clone() }
     }
@@ -58,17 +59,17 @@ impl LightKey {
     }
 
     /// Returns the resolution of the light volume.
-    pub fn resolution(&self) -> Resolution {
+    pub fn resolution(&self) -> LightVolumeResolution {
         self.resolution
     }
 
     /// Returns the storage format of transmittances.
-    pub fn precision(&self) -> Precision {
+    pub fn precision(&self) -> LightVolumePrecision {
         self.precision
     }
 
     /// Creates the key of light `index` of a request; `None` if it needs no attenuation volume.
-    pub fn of(request: &Request, index: usize) -> Option<Self> {
+    pub fn new(request: &RenderRequest, index: usize) -> Option<Self> {
         let Settings {
             schema: _,
             camera,
@@ -88,7 +89,7 @@ impl LightKey {
             cuts,
             floor: _,
             sampling:
-                Sampling {
+                SamplingSettings {
                     kernel: _,
                     slab: _,
                     slabs: _,
@@ -103,7 +104,7 @@ impl LightKey {
             // Part of the identity of the corrected volume.
             volume: _,
         } = &request.settings;
-        let light = lights.get(index)?.in_scene(camera);
+        let light = lights.get(index)?.resolve(camera);
         let SceneLight {
             kind,
             position,
@@ -111,12 +112,12 @@ impl LightKey {
             intensity: _,
             on: _,
             casts_shadows: _,
-            hood: Hood { on: hooded, half_angle_deg, rim_deg },
+            hood: Spotlight { on: hooded, half_angle_deg, rim_deg },
             density_scale,
             area,
         } = &light;
-        let hooded = *hooded && *kind == LightKind::Perspective;
-        let Shadows {
+        let hooded = *hooded && *kind == LightGeometry::Perspective;
+        let ShadowSettings {
             algorithm,
             // Part of the resolution of soft light.
             least_blocks: _,
@@ -138,15 +139,15 @@ impl LightKey {
             reverse_kernel,
             // Applied where light is looked up.
             near_field: _,
-            area: AreaShadows { samples, resolution: _ },
+            area: AreaLightSampling { samples, resolution: _ },
         } = shadows;
         let wanted = algorithm.has_volume() && light.needs_volume();
         wanted.then(|| Self {
-            volume: request.shown_volume(),
+            volume: request.volume_key(),
             kind: *kind,
-            placed: match kind {
-                LightKind::Parallel => light.direction().into(),
-                LightKind::Perspective => *position,
+            position_or_direction: match kind {
+                LightGeometry::Parallel => light.direction().into(),
+                LightGeometry::Perspective => *position,
             },
             hood_deg: hooded.then_some([*half_angle_deg, *rim_deg]),
             density_scale: *density_scale,
@@ -154,14 +155,14 @@ impl LightKey {
             algorithm: *algorithm,
             classification: request.settings.classification(),
             // Rays need no sheets.
-            engine: if *algorithm == ShadowAlgorithm::Splat { *engine } else { Engine::Gather },
-            opacity: OpacityKey::of(&request.settings),
-            transmission: TransmissionKey::of(&request.settings),
+            engine: if *algorithm == ShadowAlgorithm::Splat { *engine } else { RenderEngine::Gather },
+            opacity: OpacityKey::new(&request.settings),
+            transmission: TransmissionKey::new(&request.settings),
             first_touch: *first_touch,
             deposit: *deposit,
             kernel: *kernel,
             reverse_kernel: if *algorithm == ShadowAlgorithm::Splat
-                && *engine == Engine::Gather
+                && *engine == RenderEngine::Gather
                 && !*first_touch
             {
                 *reverse_kernel
@@ -174,10 +175,10 @@ impl LightKey {
             resolution: if request.settings.combines_lights() {
                 shadows.resolution
             } else {
-                light.resolution(shadows, request.volume.dims)
+                light.volume_resolution(shadows, request.volume.dims)
             },
             precision: *precision,
-            shading_cut: cuts.shading(),
+            shading_cut: cuts.shadowing_part(),
         })
     }
 }

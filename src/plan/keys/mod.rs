@@ -8,25 +8,25 @@ mod combined;
 mod display;
 mod eye;
 mod light;
+mod light_lookup;
 mod lit_lights;
-mod one_color;
-mod received;
 mod sky;
 mod table;
 #[cfg(test)]
 mod tests;
+mod uniform_light_color;
 
 pub use bounces::BouncesKey;
 pub use combined::CombinedKey;
 pub use display::DisplayKey;
 pub use eye::{EyeKey, FloorKey};
 pub use light::LightKey;
-pub use lit_lights::{Attenuation, LitLight, LitLights};
-pub use one_color::OneColor;
+pub use lit_lights::{ActiveLight, ActiveLights, AttenuationMethod};
 pub use sky::SkyKey;
 pub use table::{EyeTableKey, OpacityKey, TablesKey};
+pub use uniform_light_color::UniformLightColor;
 
-use super::{RenderOptions, Request, VolumeKey};
+use super::{RenderOptions, RenderRequest, VolumeKey};
 
 /// Keys of all products that a picture needs.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,18 +54,18 @@ pub struct FrameKeys {
 
 impl FrameKeys {
     /// Computes the keys of a picture: a pure function of request and options.
-    pub fn of(request: &Request, options: &RenderOptions) -> Self {
+    pub fn new(request: &RenderRequest, options: &RenderOptions) -> Self {
         let lights: Vec<_> =
-            (0..request.settings.lights.len()).map(|index| LightKey::of(request, index)).collect();
-        let combined = CombinedKey::of(request, options);
-        let sky = SkyKey::of(request);
-        let bounces = BouncesKey::of(request);
-        let eye = EyeKey::of(request, options, &lights, combined.as_ref(), (sky.as_ref(), bounces.as_ref()));
+            (0..request.settings.lights.len()).map(|index| LightKey::new(request, index)).collect();
+        let combined = CombinedKey::new(request, options);
+        let sky = SkyKey::new(request);
+        let bounces = BouncesKey::new(request);
+        let eye = EyeKey::new(request, options, &lights, combined.as_ref(), (sky.as_ref(), bounces.as_ref()));
         Self {
-            volume: request.shown_volume(),
-            tables: TablesKey::of(request),
-            floor: FloorKey::of(request, &eye),
-            display: DisplayKey::of(request, options),
+            volume: request.volume_key(),
+            tables: TablesKey::new(request),
+            floor: FloorKey::new(request, &eye),
+            display: DisplayKey::new(request, options),
             lights,
             combined,
             sky,
@@ -75,7 +75,7 @@ impl FrameKeys {
     }
 
     /// Returns the number of light volumes of this picture that another picture does not have.
-    pub fn lights_missing_in(&self, other: &Self) -> usize {
+    pub fn count_lights_missing_in(&self, other: &Self) -> usize {
         self.lights
             .iter()
             .flatten()

@@ -1,21 +1,21 @@
 //! Key of the volume of sky visibility.
 
 use super::table::OpacityKey;
-use crate::model::{Classification, Remains, Resolution, SceneAxis, Settings, SkyMode};
-use crate::plan::{Request, VolumeKey};
+use crate::model::{ClassificationOrder, ClippedPart, LightVolumeResolution, SceneAxis, Settings, SkyMode};
+use crate::plan::{RenderRequest, VolumeKey};
 
 /// Inputs of the volume of sky visibility: no colours, no brightness, no rotation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SkyKey {
     volume: VolumeKey,
     opacity: OpacityKey,
-    classification: Classification,
-    shading_cut: Remains,
+    classification: ClassificationOrder,
+    shading_cut: ClippedPart,
     density_scale: f64,
     directions: u32,
-    resolution: Resolution,
+    resolution: LightVolumeResolution,
     /// Resolution of a preview's volume.
-    previewed: Resolution,
+    preview_resolution: LightVolumeResolution,
 }
 
 /// Maximum number of directions in previews: with 6, the picture of a tooth differs by 2.8 % of white from that with
@@ -24,25 +24,27 @@ const PREVIEW_DIRECTIONS: u32 = 14;
 
 impl SkyKey {
     /// Creates the key of the volume that a picture needs; `None` if nothing attenuates a sky.
-    pub fn of(request: &Request) -> Option<Self> {
+    pub fn new(request: &RenderRequest) -> Option<Self> {
         let settings = &request.settings;
         settings.has_sky_volume().then(|| Self {
-            volume: request.shown_volume(),
-            opacity: OpacityKey::of(settings),
+            volume: request.volume_key(),
+            opacity: OpacityKey::new(settings),
             classification: settings.classification(),
-            shading_cut: settings.cuts.shading(),
+            shading_cut: settings.cuts.shadowing_part(),
             density_scale: settings.sky.density_scale,
             directions: settings.sky.directions,
-            resolution: settings.shadows.soft(settings.sky.resolution, request.volume.dims),
-            previewed: settings.shadows.soft(Resolution::Quarter, request.volume.dims),
+            resolution: settings.shadows.soft_resolution(settings.sky.resolution, request.volume.dims),
+            preview_resolution: settings
+                .shadows
+                .soft_resolution(LightVolumeResolution::Quarter, request.volume.dims),
         })
     }
 
     /// Returns the key of a preview's volume.
     #[must_use]
-    pub fn coarse(&self) -> Self {
+    pub fn for_preview(&self) -> Self {
         let directions = self.directions.min(PREVIEW_DIRECTIONS);
-        Self { directions, resolution: self.previewed, ..self.clone() }
+        Self { directions, resolution: self.preview_resolution, ..self.clone() }
     }
 
     /// Returns the number of directions from which light is followed.
@@ -51,7 +53,7 @@ impl SkyKey {
     }
 
     /// Returns the resolution of the volume.
-    pub fn resolution(&self) -> Resolution {
+    pub fn resolution(&self) -> LightVolumeResolution {
         self.resolution
     }
 
@@ -63,7 +65,7 @@ impl SkyKey {
 
 /// Look of a sky from samples.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct SkyLook {
+pub(super) struct SkyAppearance {
     mode: SkyMode,
     intensity: f64,
     colors: [[f32; 3]; 3],
@@ -74,9 +76,9 @@ pub(super) struct SkyLook {
     up: Option<SceneAxis>,
 }
 
-impl SkyLook {
+impl SkyAppearance {
     /// Extracts the look of the sky; `None` if there is none.
-    pub(super) fn of(settings: &Settings) -> Option<Self> {
+    pub(super) fn new(settings: &Settings) -> Option<Self> {
         let sky = &settings.sky;
         let is_plain = sky.mode == SkyMode::White;
         let is_gradient = sky.mode == SkyMode::Gradient;

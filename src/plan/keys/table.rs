@@ -1,9 +1,10 @@
 //! Keys of the lookup tables of the transfer functions.
 
 use crate::model::{
-    Easing, Interpolation, LabelMaterial, Length, LightingTransfer, Mixing, Settings, TransferFunction,
+    ColorMixing, Easing, LabelMaterial, LightingTransfer, OpacityInterpolation, OpacityLength, Settings,
+    TransferFunction,
 };
-use crate::plan::{Request, VolumeKey};
+use crate::plan::{RenderRequest, VolumeKey};
 
 /// Inputs of both lookup tables.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,64 +24,64 @@ pub struct TablesKey {
 /// Inputs of the eye's table: the curve with its colours, or looks of labels, and the opacity unit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EyeTableKey {
-    looks: Looks,
-    unit: Length,
+    looks: EyeTableLooks,
+    unit: OpacityLength,
 }
 
 #[derive(Debug, Clone, PartialEq)]
-enum Looks {
-    OfValues(TransferFunction),
-    OfLabels(Vec<LabelMaterial>),
+enum EyeTableLooks {
+    Values(TransferFunction),
+    Labels(Vec<LabelMaterial>),
 }
 
 /// Inputs of the opacities that attenuate light: no colours.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OpacityKey {
-    opacities: Opacities,
+    opacities: LightingOpacities,
     scale: f64,
-    unit: Length,
+    unit: OpacityLength,
 }
 
 /// Inputs of the extinction of each colour channel, apart from opacities.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TransmissionKey {
-    colors: Colors,
+    colors: TransmissionColors,
     share: f64,
 }
 
 #[derive(Debug, Clone, PartialEq)]
-enum Colors {
-    OfValues(Vec<[f32; 3]>, Mixing),
-    OfLabels(Vec<[f32; 3]>),
+enum TransmissionColors {
+    Values(Vec<[f32; 3]>, ColorMixing),
+    Labels(Vec<[f32; 3]>),
 }
 
 #[derive(Debug, Clone, PartialEq)]
-enum Opacities {
-    OfValues { points: Vec<([f64; 2], Easing)>, interpolation: Interpolation },
-    OfLabels(Vec<(i64, f64)>),
+enum LightingOpacities {
+    Values { points: Vec<([f64; 2], Easing)>, interpolation: OpacityInterpolation },
+    Labels(Vec<(i64, f64)>),
 }
 
 impl TablesKey {
     /// Creates the key of both tables of a picture.
-    pub(super) fn of(request: &Request) -> Self {
+    pub(super) fn new(request: &RenderRequest) -> Self {
         let settings = &request.settings;
         Self {
-            volume: request.shown_volume(),
-            eye: EyeTableKey::of(settings),
-            lighting: OpacityKey::of(settings),
-            transmission: TransmissionKey::of(settings),
-            cells_are_bounds: settings.cells_are_bounds(),
+            volume: request.volume_key(),
+            eye: EyeTableKey::new(settings),
+            lighting: OpacityKey::new(settings),
+            transmission: TransmissionKey::new(settings),
+            cells_are_bounds: settings.cell_bounds_hold(),
         }
     }
 }
 
 impl EyeTableKey {
     /// Creates the key of the eye's table in a look.
-    pub(super) fn of(settings: &Settings) -> Self {
+    pub(super) fn new(settings: &Settings) -> Self {
         let looks = if settings.labels.is_empty() {
-            Looks::OfValues(settings.transfer.clone())
+            EyeTableLooks::Values(settings.transfer.clone())
         } else {
-            Looks::OfLabels(settings.labels.materials())
+            EyeTableLooks::Labels(settings.labels.materials())
         };
         Self { looks, unit: settings.opacity_unit }
     }
@@ -88,18 +89,18 @@ impl EyeTableKey {
 
 impl OpacityKey {
     /// Creates the key of the opacities that attenuate light in a look.
-    pub(super) fn of(settings: &Settings) -> Self {
+    pub(super) fn new(settings: &Settings) -> Self {
         let LightingTransfer { linked, scale, curve } = &settings.lighting;
         let opacities = if settings.labels.is_empty() {
             let curve = if *linked { &settings.transfer } else { curve };
             let TransferFunction { points, interpolation, mixing: _ } = curve;
-            Opacities::OfValues {
+            LightingOpacities::Values {
                 points: points.iter().map(|point| ([point.value, point.opacity], point.easing)).collect(),
                 interpolation: *interpolation,
             }
         } else {
             let materials = settings.labels.materials().into_iter();
-            Opacities::OfLabels(materials.map(|material| (material.number, material.opacity)).collect())
+            LightingOpacities::Labels(materials.map(|material| (material.number, material.opacity)).collect())
         };
         Self { opacities, scale: *scale, unit: settings.opacity_unit }
     }
@@ -107,15 +108,15 @@ impl OpacityKey {
 
 impl TransmissionKey {
     /// Creates the key of the colour channels' extinction in a look; `None` if shadows are grey.
-    pub(super) fn of(settings: &Settings) -> Option<Self> {
+    pub(super) fn new(settings: &Settings) -> Option<Self> {
         let colors = || {
             if !settings.labels.is_empty() {
                 let materials = settings.labels.materials().into_iter();
-                return Colors::OfLabels(materials.map(|material| material.color).collect());
+                return TransmissionColors::Labels(materials.map(|material| material.color).collect());
             }
             let LightingTransfer { linked, scale: _, curve } = &settings.lighting;
             let curve = if *linked { &settings.transfer } else { curve };
-            Colors::OfValues(curve.points.iter().map(|point| point.color).collect(), curve.mixing)
+            TransmissionColors::Values(curve.points.iter().map(|point| point.color).collect(), curve.mixing)
         };
         settings
             .has_colored_shadows()

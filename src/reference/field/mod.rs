@@ -1,7 +1,7 @@
 //! Density field on a grid, as the renderer stores it, and trilinear interpolation in any grid.
 
-pub(in crate::reference) mod classified;
-pub(in crate::reference) mod pyramid;
+pub(crate) mod classified;
+pub(crate) mod pyramid;
 
 use glam::DVec3;
 
@@ -12,25 +12,25 @@ pub type Rounding = fn(f32) -> f32;
 
 /// Densities of a volume, or other numbers on its grid.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Field {
+pub struct DensityField {
     /// Number of voxels along x, y, z.
     pub dims: [usize; 3],
     /// One density per voxel, x fastest.
     pub densities: Vec<f64>,
     /// Values outside the grid.
-    pub beyond: Beyond,
+    pub border: BorderMode,
 }
 
 /// Extension of a field outside its grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Beyond {
+pub enum BorderMode {
     /// Values at the border are repeated (clamp to edge).
-    Border,
+    Clamp,
     /// Values outside the grid are 0.
-    Nothing,
+    Zero,
 }
 
-impl Field {
+impl DensityField {
     /// Creates the densities of a volume, each rounded as it will be stored.
     pub fn with_rounding(volume: &Volume, round: impl Fn(f32) -> f32) -> Self {
         let dims = volume.dims();
@@ -38,20 +38,20 @@ impl Field {
             .flat_map(|z| volume.slice_densities(z))
             .map(|density| f64::from(round(density)))
             .collect();
-        Self { dims, densities, beyond: Beyond::Border }
+        Self { dims, densities, border: BorderMode::Clamp }
     }
 
     /// Creates the presence of voxels, 1 for present and 0 for missing ones; `None` if no voxel is missing.
-    pub(in crate::reference) fn of_presence(volume: &Volume) -> Option<Self> {
+    pub(crate) fn from_presence(volume: &Volume) -> Option<Self> {
         let missing = volume.missing()?;
         let there = |voxel| if missing.contains(voxel) { 0.0 } else { 1.0 };
         let densities = (0..volume.voxel_count()).map(there).collect();
-        Some(Self { dims: volume.dims(), densities, beyond: Beyond::Nothing })
+        Some(Self { dims: volume.dims(), densities, border: BorderMode::Zero })
     }
 
     /// Returns the density of one voxel, inside the grid or outside.
     pub fn at(&self, x: i64, y: i64, z: i64) -> f64 {
-        if self.beyond == Beyond::Nothing && !self.has(x, y, z) {
+        if self.border == BorderMode::Zero && !self.contains(x, y, z) {
             return 0.0;
         }
         let nearest = |c: i64, n: usize| c.clamp(0, n as i64 - 1) as usize;
@@ -60,14 +60,14 @@ impl Field {
     }
 
     /// Returns true if a voxel is in the grid.
-    pub(in crate::reference) fn has(&self, x: i64, y: i64, z: i64) -> bool {
+    pub(crate) fn contains(&self, x: i64, y: i64, z: i64) -> bool {
         [x, y, z].iter().zip(self.dims).all(|(c, n)| (0..n as i64).contains(c))
     }
 }
 
 /// Interpolates trilinearly between the eight values around `at`; values lie at integers, and are clamped to the edge
 /// outside.
-pub(in crate::reference) fn trilinear(dims: [usize; 3], values: &[f64], at: DVec3) -> f64 {
+pub(crate) fn trilinear(dims: [usize; 3], values: &[f64], at: DVec3) -> f64 {
     let cell = |axis: usize| {
         let last = (dims[axis] - 1) as f64;
         let low = at[axis].floor();

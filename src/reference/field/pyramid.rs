@@ -8,10 +8,10 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::{Field, Rounding, trilinear};
+use super::{DensityField, Rounding, trilinear};
 
 /// Coarsest level: kernels are stretched up to eight times.
-pub(in crate::reference) const MAX_LEVEL: usize = 3;
+pub(crate) const MAX_LEVEL: usize = 3;
 
 /// Texels of padding before the grid on every axis.
 const PAD: usize = 4;
@@ -19,11 +19,11 @@ const PAD: usize = 4;
 /// Prefiltered volume at full, ½, ¼ and ⅛ resolution.
 #[derive(Debug, Clone)]
 pub struct Pyramid {
-    levels: Vec<Level>,
+    levels: Vec<PyramidLevel>,
 }
 
 #[derive(Debug, Clone)]
-struct Level {
+struct PyramidLevel {
     dims: [usize; 3],
     values: Vec<f64>,
 }
@@ -31,13 +31,13 @@ struct Level {
 impl Pyramid {
     /// Blurs a field and halves the result three times. `width` is the kernel's width relative to the correct one;
     /// every level is rounded as it is stored.
-    pub fn of(field: &Field, width: f64, rounding: Option<Rounding>) -> Self {
-        Self::faded(field, width, rounding, None)
+    pub fn new(field: &DensityField, width: f64, rounding: Option<Rounding>) -> Self {
+        Self::with_presence(field, width, rounding, None)
     }
 
-    /// Creates a pyramid as [`Self::of`] does, whose blurred field is multiplied by presence.
-    pub(in crate::reference) fn faded(
-        field: &Field,
+    /// Creates a pyramid as [`Self::new`] does, whose blurred field is multiplied by presence.
+    pub(crate) fn with_presence(
+        field: &DensityField,
         width: f64,
         rounding: Option<Rounding>,
         presence: Option<&Self>,
@@ -60,7 +60,7 @@ impl Pyramid {
     }
 
     /// Quantises all values to `steps` steps from 0 to 1.
-    pub(in crate::reference) fn in_steps(mut self, steps: f64) -> Self {
+    pub(crate) fn quantised(mut self, steps: f64) -> Self {
         for value in self.levels.iter_mut().flat_map(|level| &mut level.values) {
             *value = (*value * steps).round() / steps;
         }
@@ -68,9 +68,9 @@ impl Pyramid {
     }
 
     /// Returns the differences between the next and the previous texel along an axis, level by level.
-    pub(in crate::reference) fn changes(&self, axis: usize) -> Self {
-        let change = |level: &Level| {
-            let Level { dims, values } = level;
+    pub(crate) fn central_differences(&self, axis: usize) -> Self {
+        let change = |level: &PyramidLevel| {
+            let PyramidLevel { dims, values } = level;
             let at = |texel: [usize; 3], along: usize| {
                 let [x, y, z] = std::array::from_fn(|i| if i == axis { along } else { texel[i] });
                 values[x + dims[0] * (y + dims[1] * z)]
@@ -79,7 +79,7 @@ impl Pyramid {
                 let behind = (texel[axis] + 1).min(dims[axis] - 1);
                 at(texel, behind) - at(texel, texel[axis].saturating_sub(1))
             });
-            Level { dims: *dims, values }
+            PyramidLevel { dims: *dims, values }
         };
         Self { levels: self.levels.iter().map(change).collect() }
     }
@@ -96,14 +96,14 @@ impl Pyramid {
     /// Interpolates in one level. Texture coordinate u = (p + 4.5) / padded dims on every level, so in texels u ·
     /// dims − ½.
     fn fetch_level(&self, point: DVec3, level: usize) -> f64 {
-        let Level { dims, values } = &self.levels[level];
+        let PyramidLevel { dims, values } = &self.levels[level];
         let at = (point + PAD as f64 + 0.5) / (1 << level) as f64 - 0.5;
         trilinear(*dims, values, at)
     }
 }
 
 /// Blurs a field: Σ over the 27 neighbours of a, 1 − 2a or a per axis. Variance 2a + 1/6 (the tent's) = ⅓.
-fn prefiltered(field: &Field, width: f64) -> Level {
+fn prefiltered(field: &DensityField, width: f64) -> PyramidLevel {
     let a = (width * width / 3.0 - 1.0 / 6.0) / 2.0;
     let weights = [a, 1.0 - 2.0 * a, a];
     let dims = field.dims.map(|n| (n + 2 * PAD).next_multiple_of(1 << MAX_LEVEL));
@@ -119,12 +119,12 @@ fn prefiltered(field: &Field, width: f64) -> Level {
         }
         sum
     });
-    Level { dims, values }
+    PyramidLevel { dims, values }
 }
 
 /// Halves the resolution. Eight trilinear fetches at ± 0.625 texel from the middle of a coarse texel weigh the finer
 /// ones by 1/16, 7/16, 7/16, 1/16 per axis, which adds a variance of ½ texel².
-fn halved(finer: &Level, round: impl Fn(f64) -> f64 + Sync) -> Level {
+fn halved(finer: &PyramidLevel, round: impl Fn(f64) -> f64 + Sync) -> PyramidLevel {
     const STEP: f64 = 0.625;
     let dims = finer.dims.map(|n| n / 2);
     let values = texels(dims, |texel| {
@@ -135,7 +135,7 @@ fn halved(finer: &Level, round: impl Fn(f64) -> f64 + Sync) -> Level {
         });
         round(fetches.sum::<f64>() / 8.0)
     });
-    Level { dims, values }
+    PyramidLevel { dims, values }
 }
 
 /// Computes one value per texel, x fastest, slices in parallel.
@@ -148,14 +148,14 @@ fn texels(dims: [usize; 3], value: impl Fn([usize; 3]) -> f64 + Sync) -> Vec<f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reference::field::Beyond;
+    use crate::reference::field::BorderMode;
 
     #[test]
     fn every_level_keeps_the_sum_and_the_place_and_widens_the_kernel_as_it_should() {
         let densities = vec![0.0; 24 * 24 * 24];
-        let mut field = Field { dims: [24; 3], densities, beyond: Beyond::Border };
+        let mut field = DensityField { dims: [24; 3], densities, border: BorderMode::Clamp };
         field.densities[11 + 24 * (12 + 24 * 12)] = 1.0;
-        let pyramid = Pyramid::of(&field, 1.0, None);
+        let pyramid = Pyramid::new(&field, 1.0, None);
         // All phases: samples finely along x through the sums over y and z.
         for level in 0..=2usize {
             let step = 0.5;

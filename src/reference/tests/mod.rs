@@ -9,11 +9,15 @@ use glam::DVec3;
 use super::*;
 use crate::data::Samples;
 use crate::model::{
-    Camera, ControlPoint, Deposit, Interpolation, Light, LightKind, NearField, Projection, Quadrature,
-    Resolution, ReverseKernel, Sides, TransferFunction,
+    Camera, ControlPoint, DepositMode, LightGeometry, LightSettings, LightVolumeResolution, LitSides,
+    NearFieldRay, OpacityInterpolation, Projection, ReverseKernel, SlabQuadrature, TransferFunction,
 };
 
-const KERNELS: [Kernel; 3] = [Kernel::BSpline, Kernel::Gaussian { sigma: 0.6 }, Kernel::Prefiltered];
+const KERNELS: [ReconstructionKernel; 3] = [
+    ReconstructionKernel::BSpline,
+    ReconstructionKernel::Gaussian { sigma: 0.6 },
+    ReconstructionKernel::Prefiltered,
+];
 
 fn volume(dims: [usize; 3], density: impl Fn(DVec3) -> f64) -> Volume {
     volume_with(dims, DVec3::ONE, density)
@@ -52,22 +56,22 @@ fn settings(depth: f64) -> Settings {
     let mut settings = Settings {
         transfer: TransferFunction {
             points,
-            interpolation: Interpolation::Extinction,
+            interpolation: OpacityInterpolation::Extinction,
             ..TransferFunction::default()
         },
         camera: Camera { distance: 4.0, ..Camera::default() },
-        lights: vec![Light { position: [0.0, 0.0, 4.0], ..Light::default() }],
+        lights: vec![LightSettings { position: [0.0, 0.0, 4.0], ..LightSettings::default() }],
         ..Settings::default()
     };
     settings.shadows.slab = 1.0;
     settings.shadows.reverse_kernel = ReverseKernel::Forward;
-    settings.shadows.near_field = NearField::Off;
-    settings.shading.sides = Sides::Two;
+    settings.shadows.near_field = NearFieldRay::Off;
+    settings.shading.sides = LitSides::Two;
     settings
 }
 
-fn options(weights: Weights, fault: Fault) -> Options {
-    Options { weights, fault, ..Options::default() }
+fn options(weights: ReferenceWeights, fault: ReferenceFault) -> ReferenceOptions {
+    ReferenceOptions { weights, fault, ..ReferenceOptions::default() }
 }
 
 /// Returns the root mean square of differences.
@@ -77,9 +81,9 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Makes settings with one light and an eye, at an optical depth of 0.4 per full voxel.
-fn scene(kind: LightKind, position: [f64; 3], projection: Projection) -> Settings {
+fn scene(kind: LightGeometry, position: [f64; 3], projection: Projection) -> Settings {
     let mut settings = settings(0.4);
-    settings.lights[0] = Light { kind, position, ..Light::default() };
+    settings.lights[0] = LightSettings { kind, position, ..LightSettings::default() };
     settings.camera.projection = projection;
     settings
 }

@@ -2,16 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use chiaroscuro::app::{App, Options};
+use chiaroscuro::app::{App, WindowOptions};
 use chiaroscuro::data::{Corrections, SpacingUnit};
-use chiaroscuro::model::{Length, Record, Settings};
+use chiaroscuro::model::{LookRecord, OpacityLength, Settings};
 use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::{
-    click, drag, in_one_frame, keys_of, picture, slow_window, stroke, wait_until, wait_until_idle,
-    window_with,
+    adjusted_window, click, drag, key_events, key_stroke, picture, send_in_one_frame, slow_window,
+    wait_until, wait_until_idle,
 };
 
 fn settings(harness: &Harness<'_, App>) -> Settings {
@@ -33,13 +33,16 @@ fn write_slab(path: &Path) {
     std::fs::write(path, (0..24 * 24 * 24).map(value).collect::<Vec<_>>()).expect("written");
 }
 
-fn start(source: &Path, storage: &Path, session: Option<PathBuf>) -> Harness<'static, App> {
+fn window_of(source: &Path, storage: &Path, session: Option<PathBuf>) -> Harness<'static, App> {
     let (source, storage) = (Some(source.to_owned()), Some(storage.to_owned()));
-    window_with(Options { source, storage, session, ..Options::default() }, Vec2::new(760.0, 1600.0))
+    adjusted_window(
+        WindowOptions { source, storage, session, ..WindowOptions::default() },
+        Vec2::new(760.0, 1600.0),
+    )
 }
 
 /// Expands the corrections in the section "Data".
-fn unfold(harness: &mut Harness<'_, App>) {
+fn expand_corrections(harness: &mut Harness<'_, App>) {
     for part in ["Data", "Corrections"] {
         harness.get_by_label(part).scroll_to_me();
         harness.run_steps(8);
@@ -54,12 +57,12 @@ fn unfold(harness: &mut Harness<'_, App>) {
 #[test]
 fn numbers_are_typed_with_tab_within_a_frame() {
     let mut harness = slow_window(Vec2::new(760.0, 1600.0));
-    unfold(&mut harness);
+    expand_corrections(&mut harness);
     let before = settings(&harness);
     click(&mut harness, "Spacing along x");
-    let [tab, enter] = [Key::Tab, Key::Enter].map(|key| stroke(key, Modifiers::NONE).to_vec());
-    let [first, last] = ["0.957", "1.5"].map(keys_of);
-    in_one_frame(&mut harness, [first.clone(), tab.clone(), first, tab, last, enter].concat());
+    let [tab, enter] = [Key::Tab, Key::Enter].map(|key| key_stroke(key, Modifiers::NONE).to_vec());
+    let [first, last] = ["0.957", "1.5"].map(key_events);
+    send_in_one_frame(&mut harness, [first.clone(), tab.clone(), first, tab, last, enter].concat());
     wait_until_idle(&mut harness);
     let after = settings(&harness);
     assert_eq!(after.volume.spacing, Some([0.957, 0.957, 1.5]));
@@ -70,17 +73,17 @@ fn numbers_are_typed_with_tab_within_a_frame() {
 }
 
 #[test]
-fn what_is_corrected_is_seen_undone_and_remembered_for_the_file() {
+fn corrections_are_shown_undone_and_remembered() {
     let (folder, storage) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let file = folder.path().join("slab_24x24x24_uint8.raw");
     write_slab(&file);
     // Not the first run, which shows hints over the picture.
     std::fs::create_dir(storage.path().join("runs")).expect("a folder");
-    let mut harness = start(&file, storage.path(), None);
+    let mut harness = window_of(&file, storage.path(), None);
     let as_opened = settings(&harness);
     assert!(as_opened.volume.is_none());
     let (before, _) = picture(&mut harness);
-    unfold(&mut harness);
+    expand_corrections(&mut harness);
     let fills = harness.state().light_rebuilds();
     click(&mut harness, "Flip x");
     wait_until(&mut harness, "never corrected", |app| app.settings().volume.flip.x && app.is_idle());
@@ -115,7 +118,7 @@ fn what_is_corrected_is_seen_undone_and_remembered_for_the_file() {
     drop(harness);
 
     // The next run opens the file corrected, and says so; undo shows it as in the file, and forgets the correction.
-    let mut harness = start(&file, storage.path(), None);
+    let mut harness = window_of(&file, storage.path(), None);
     assert_eq!(settings(&harness).volume, spaced.volume);
     let said = harness.state().latest_note().map(str::to_owned);
     assert!(
@@ -125,18 +128,18 @@ fn what_is_corrected_is_seen_undone_and_remembered_for_the_file() {
     press(&mut harness, Modifiers::COMMAND, Key::Z);
     assert!(settings(&harness).volume.is_none());
     drop(harness);
-    let harness = start(&file, storage.path(), None);
+    let harness = window_of(&file, storage.path(), None);
     assert!(settings(&harness).volume.is_none());
     drop(harness);
 
     // Another file at the same path is not corrected.
-    let mut harness = start(&file, storage.path(), None);
-    unfold(&mut harness);
+    let mut harness = window_of(&file, storage.path(), None);
+    expand_corrections(&mut harness);
     click(&mut harness, "Flip z");
     wait_until(&mut harness, "never corrected", |app| app.settings().volume.flip.z && app.is_idle());
     drop(harness);
     std::fs::write(&file, (0..24 * 24 * 24).map(|at| (at % 251) as u8).collect::<Vec<_>>()).expect("written");
-    let harness = start(&file, storage.path(), None);
+    let harness = window_of(&file, storage.path(), None);
     assert!(settings(&harness).volume.is_none());
 }
 
@@ -148,25 +151,25 @@ fn a_session_corrects_its_volume_and_no_other() {
     std::fs::write(&other, (0..24 * 24 * 24).map(|at| (at % 240) as u8).collect::<Vec<_>>())
         .expect("written");
     let session = folder.path().join("session.json");
-    let mut harness = start(&file, storage.path(), Some(session.clone()));
+    let mut harness = window_of(&file, storage.path(), Some(session.clone()));
     let mut wanted = settings(&harness);
-    unfold(&mut harness);
+    expand_corrections(&mut harness);
     click(&mut harness, "Flip y");
     wait_until(&mut harness, "never corrected", |app| app.settings().volume.flip.y && app.is_idle());
     harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
     harness.run_steps(8);
     drop(harness);
-    let record = Record::read(&std::fs::read_to_string(&session).expect("saved")).expect("a record");
+    let record = LookRecord::parse(&std::fs::read_to_string(&session).expect("saved")).expect("a record");
     wanted.volume.flip.y = true;
     let id =
         u64::from_str_radix(&record.volume.as_ref().expect("of a volume").content_id, 16).expect("a number");
-    assert_eq!(record.corrections_of(id), Some(wanted.volume));
+    assert_eq!(record.corrections_for(id), Some(wanted.volume));
     // With a storage that remembers nothing of the file.
     let elsewhere = tempfile::tempdir().unwrap();
-    let harness = start(&file, elsewhere.path(), Some(session.clone()));
+    let harness = window_of(&file, elsewhere.path(), Some(session.clone()));
     assert_eq!(settings(&harness).volume, wanted.volume);
     drop(harness);
-    let harness = start(&other, elsewhere.path(), Some(session));
+    let harness = window_of(&other, elsewhere.path(), Some(session));
     assert!(settings(&harness).volume.is_none());
 }
 
@@ -177,27 +180,27 @@ fn a_look_that_is_kept_and_lengths_go_along() {
     write_slab(&file);
     std::fs::write(&other, (0..24 * 24 * 24).map(|at| (at % 240) as u8).collect::<Vec<_>>())
         .expect("written");
-    let options = Options {
+    let options = WindowOptions {
         source: Some(file),
         storage: Some(storage.path().to_owned()),
         adjust: Some(Box::new(|mut settings| {
             settings.shadows.keep_balanced = false;
             settings.shading.ambient = 0.4;
-            settings.opacity_unit = Length::Mm(2.0);
+            settings.opacity_unit = OpacityLength::Mm(2.0);
             settings.volume = Corrections { unit: Some(SpacingUnit::Um), ..Corrections::default() };
             settings
         })),
-        ..Options::default()
+        ..WindowOptions::default()
     };
-    let mut harness = window_with(options, Vec2::new(760.0, 1600.0));
+    let mut harness = adjusted_window(options, Vec2::new(760.0, 1600.0));
     assert_eq!(settings(&harness).volume.unit, Some(SpacingUnit::Um));
-    unfold(&mut harness);
+    expand_corrections(&mut harness);
     click(&mut harness, "All as in the file");
     wait_until(&mut harness, "never corrected", |app| app.settings().volume.is_none() && app.is_idle());
-    assert_eq!(settings(&harness).opacity_unit, Length::Mm(2000.0), "the same share of the object");
+    assert_eq!(settings(&harness).opacity_unit, OpacityLength::Mm(2000.0), "the same share of the object");
     press(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!((settings(&harness).opacity_unit, settings(&harness).volume.unit), {
-        (Length::Mm(2.0), Some(SpacingUnit::Um))
+        (OpacityLength::Mm(2.0), Some(SpacingUnit::Um))
     });
     // The next volume keeps this look, but not its corrections.
     let ctx = harness.ctx.clone();

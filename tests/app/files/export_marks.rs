@@ -3,7 +3,7 @@
 use eframe::egui::{Key, Modifiers, Role, Vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
-use crate::harness::{bare_window, click, picture, wait_until, wait_until_idle, window};
+use crate::harness::{click, picture, wait_until, wait_until_idle, window, window_without_overlays};
 
 /// Tolerance in 255ths between marks over the window's picture and over the exported one: two implementations blend
 /// and round them.
@@ -11,7 +11,7 @@ const ROUNDING: u8 = 3;
 
 #[test]
 fn the_picture_is_what_would_be_exported_with_its_marks() {
-    let mut harness = bare_window();
+    let mut harness = window_without_overlays();
     harness.set_size(Vec2::new(1100.0, 760.0));
     harness.run_steps(4);
     wait_until_idle(&mut harness);

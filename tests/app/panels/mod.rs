@@ -1,30 +1,32 @@
 //! Tests of the controls in the panels, and of their effects on the picture.
 
 mod bars;
+mod environment_map;
 mod labels;
 mod layout;
 mod menus;
 mod presets;
-mod side;
+mod reset_buttons;
+mod side_panel;
 mod slices;
-mod surroundings;
-mod values;
 
-use chiaroscuro::app::{App, Options};
-use chiaroscuro::model::{LightKind, Projection};
+use chiaroscuro::app::{App, WindowOptions};
+use chiaroscuro::model::{LightGeometry, Projection};
 use eframe::egui::{self, Modifiers, Role, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{SCENE, bare_window, click, picture, render, wait_until, wait_until_idle, window_with};
+use crate::harness::{
+    SCENE, adjusted_window, click, picture, render, wait_until, wait_until_idle, window_without_overlays,
+};
 
 #[test]
 fn panels_change_settings() {
-    let mut harness = bare_window();
+    let mut harness = window_without_overlays();
     click(&mut harness, "Positional");
-    assert_eq!(harness.state().settings().lights[0].kind, LightKind::Perspective);
+    assert_eq!(harness.state().settings().lights[0].kind, LightGeometry::Perspective);
     click(&mut harness, "Directional");
-    assert_eq!(harness.state().settings().lights[0].kind, LightKind::Parallel);
+    assert_eq!(harness.state().settings().lights[0].kind, LightGeometry::Parallel);
     // Makes space for the following sections.
     click(&mut harness, "Lights");
     click(&mut harness, "Camera");
@@ -43,12 +45,12 @@ fn panels_change_settings() {
     assert_eq!(harness.state().settings().shadows.strength, 0.5);
     wait_until_idle(&mut harness);
     let (shown, size) = picture(&mut harness);
-    assert!(shown == render(&harness, size).shown);
+    assert!(shown == render(&harness, size).display);
 }
 
 #[test]
 fn a_floor_takes_shadows() {
-    let mut harness = bare_window();
+    let mut harness = window_without_overlays();
     let (bare, _) = picture(&mut harness);
     let fills = harness.state().light_rebuilds();
     harness.key_press_modifiers(Modifiers::SHIFT, egui::Key::G);
@@ -58,7 +60,7 @@ fn a_floor_takes_shadows() {
     assert!(harness.state().settings().floor.on);
     let (floor, size) = picture(&mut harness);
     assert!(floor != bare);
-    assert!(floor == render(&harness, size).shown);
+    assert!(floor == render(&harness, size).display);
     assert_eq!(harness.state().light_rebuilds(), fills, "the floor needs no light volume");
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
     wait_until_idle(&mut harness);
@@ -69,8 +71,8 @@ fn a_floor_takes_shadows() {
 #[test]
 fn voxels_are_averaged_and_the_look_stays() {
     // So tall that the whole section is visible.
-    let options = Options { source: Some(SCENE.into()), ..Options::default() };
-    let mut harness = window_with(options, Vec2::new(760.0, 1600.0));
+    let options = WindowOptions { source: Some(SCENE.into()), ..WindowOptions::default() };
+    let mut harness = adjusted_window(options, Vec2::new(760.0, 1600.0));
     harness.key_press(egui::Key::CloseBracket);
     click(&mut harness, "Data");
     let before = harness.state().settings().clone();
@@ -100,8 +102,8 @@ fn voxels_are_averaged_and_the_look_stays() {
 #[test]
 fn volumes_are_treated_as_other_data_in_one_step() {
     // As tall as the section with a table of labels and the clipping section above it.
-    let options = Options { source: Some(SCENE.into()), ..Options::default() };
-    let mut harness = window_with(options, Vec2::new(760.0, 2600.0));
+    let options = WindowOptions { source: Some(SCENE.into()), ..WindowOptions::default() };
+    let mut harness = adjusted_window(options, Vec2::new(760.0, 2600.0));
     click(&mut harness, "Data");
     harness.get_by_label("Scalar field");
     // Clipping, quality and background are not part of a first look.

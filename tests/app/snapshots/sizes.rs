@@ -1,25 +1,25 @@
 //! Snapshots of the whole window without its picture: at three sizes, with the longest texts, and with wider letters,
 //! like translations that are longer.
 
-use chiaroscuro::app::{App, Options};
-use chiaroscuro::model::{Kept, Settings, SkyMode};
+use chiaroscuro::app::{App, WindowOptions};
+use chiaroscuro::model::{SavedEntry, Settings, SkyMode};
 use eframe::egui::{Rect, Role, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use image::RgbaImage;
 
 use super::{THEMES, check, in_theme};
-use crate::harness::{SCENE, wait_until_idle, window_with};
-use crate::names::unfolded;
+use crate::accessibility::expanded_window;
+use crate::harness::{SCENE, adjusted_window, wait_until_idle};
 
 /// Factor by which translations are longer than English.
-const LONGER: f32 = 1.4;
+const TRANSLATION_LENGTH_FACTOR: f32 = 1.4;
 
 /// Smallest margin between a panel's contents and the window's edge, in points.
 const MARGIN: f32 = 3.0;
 
 /// Height of the status bar, in points, which shows the speed of this machine.
-const STATUS: f32 = 26.0;
+const STATUS_BAR_HEIGHT: f32 = 26.0;
 
 fn window_of(change: fn(&mut Settings), size: Vec2) -> Harness<'static, App> {
     let adjust = Box::new(move |mut settings: Settings| {
@@ -27,7 +27,10 @@ fn window_of(change: fn(&mut Settings), size: Vec2) -> Harness<'static, App> {
         change(&mut settings);
         settings
     });
-    window_with(Options { source: Some(SCENE.into()), adjust: Some(adjust), ..Options::default() }, size)
+    adjusted_window(
+        WindowOptions { source: Some(SCENE.into()), adjust: Some(adjust), ..WindowOptions::default() },
+        size,
+    )
 }
 
 /// Sets names of some two hundred letters, wherever there are names.
@@ -37,12 +40,12 @@ fn with_long_names(settings: &mut Settings) {
     settings.sky.mode = SkyMode::Picture;
     settings.sky.picture.name = "panorama_".repeat(22);
     let camera = settings.camera.clone();
-    settings.kept = vec![Kept::view(name, &camera)];
+    settings.kept = vec![SavedEntry::view(name, &camera)];
 }
 
 fn enlarge_letters(harness: &mut Harness<'_, App>) {
     harness.ctx.all_styles_mut(|style| {
-        style.text_styles.values_mut().for_each(|font| font.size *= LONGER);
+        style.text_styles.values_mut().for_each(|font| font.size *= TRANSLATION_LENGTH_FACTOR);
     });
     harness.run_steps(6);
     wait_until_idle(harness);
@@ -50,7 +53,7 @@ fn enlarge_letters(harness: &mut Harness<'_, App>) {
 
 /// Blanks out the picture and the status bar.
 fn without_picture(mut window: RgbaImage, picture: Rect) -> RgbaImage {
-    let status = window.height() as f32 - STATUS;
+    let status = window.height() as f32 - STATUS_BAR_HEIGHT;
     for (x, y, pixel) in window.enumerate_pixels_mut() {
         let at = eframe::egui::pos2(x as f32 + 0.5, y as f32 + 0.5);
         if picture.contains(at) || at.y > status {
@@ -89,7 +92,7 @@ fn windows_of_three_sizes() {
 /// Letters as wide as those of longer languages are not cut off in the side panel.
 #[test]
 fn wide_letters_are_not_cut_off() {
-    let mut harness = unfolded(700.0);
+    let mut harness = expanded_window(700.0);
     enlarge_letters(&mut harness);
     let mut beyond = Vec::new();
     for role in [

@@ -8,33 +8,33 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 
 /// Longest run of any command here; most take well under a second.
-pub(crate) const PATIENCE: Duration = Duration::from_mins(2);
+pub(crate) const COMMAND_TIMEOUT: Duration = Duration::from_mins(2);
 
 /// Longest time until a volume is refused, whatever sizes its file claims.
-pub(crate) const PROMPT: Duration = Duration::from_secs(5);
+pub(crate) const REFUSAL_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// Temporary folder, one for each test.
-pub(crate) struct Folder(tempfile::TempDir);
+pub(crate) struct ProgramFolder(tempfile::TempDir);
 
 /// Outcome of a command: exit code, outputs and duration.
 #[derive(Debug)]
-pub(crate) struct Outcome {
+pub(crate) struct CommandOutcome {
     pub(crate) code: Option<i32>,
     pub(crate) stdout: String,
     pub(crate) stderr: String,
     pub(crate) took: Duration,
 }
 
-impl Outcome {
+impl CommandOutcome {
     /// Error message of the program: its output from the last line that begins with `error: `. Drivers and the log
     /// may have written before it.
-    pub(crate) fn message(&self) -> Option<&str> {
+    pub(crate) fn error_message(&self) -> Option<&str> {
         let start = self.stderr.rfind("\nerror: ").map(|end_of_line| end_of_line + 1);
         start.or_else(|| self.stderr.starts_with("error: ").then_some(0)).map(|at| &self.stderr[at..])
     }
 }
 
-impl Folder {
+impl ProgramFolder {
     pub(crate) fn new() -> Self {
         Self(tempfile::tempdir().expect("a folder for temporary files"))
     }
@@ -65,11 +65,11 @@ impl Folder {
     }
 
     /// Runs the program in this folder.
-    pub(crate) fn run(&self, args: &str) -> Outcome {
+    pub(crate) fn run(&self, args: &str) -> CommandOutcome {
         self.run_with(args, &[])
     }
 
-    pub(crate) fn run_with(&self, args: &str, environment: &[(&str, &str)]) -> Outcome {
+    pub(crate) fn run_with(&self, args: &str, environment: &[(&str, &str)]) -> CommandOutcome {
         // Files instead of pipes: a pipe that is not drained would block the program.
         let file = || tempfile::NamedTempFile::new().expect("a temporary file");
         let (stdout, stderr) = (file(), file());
@@ -89,28 +89,33 @@ impl Folder {
             if let Some(status) = child.try_wait().expect("the program can be waited for") {
                 break status;
             }
-            if start.elapsed() > PATIENCE {
+            if start.elapsed() > COMMAND_TIMEOUT {
                 child.kill().expect("the program can be ended");
-                panic!("`{args}` takes longer than {PATIENCE:?}");
+                panic!("`{args}` takes longer than {COMMAND_TIMEOUT:?}");
             }
             std::thread::sleep(Duration::from_millis(5));
         };
         let text = |file: &tempfile::NamedTempFile| {
             fs::read_to_string(file.path()).expect("the output can be read and is UTF-8")
         };
-        Outcome { code: status.code(), took: start.elapsed(), stdout: text(&stdout), stderr: text(&stderr) }
+        CommandOutcome {
+            code: status.code(),
+            took: start.elapsed(),
+            stdout: text(&stdout),
+            stderr: text(&stderr),
+        }
     }
 
     /// Runs a command that must succeed, and returns its standard output.
-    pub(crate) fn succeed(&self, args: &str) -> String {
+    pub(crate) fn run_successfully(&self, args: &str) -> String {
         let outcome = self.run(args);
         assert_eq!(outcome.code, Some(0), "`{args}`: {outcome:?}");
-        assert!(outcome.message().is_none(), "`{args}` is a good run: {outcome:?}");
+        assert!(outcome.error_message().is_none(), "`{args}` is a good run: {outcome:?}");
         outcome.stdout
     }
 
     /// Runs a command that must fail with this code and leave the folder unchanged; returns its error message.
-    pub(crate) fn fail(&self, args: &str, code: i32) -> String {
+    pub(crate) fn run_failing(&self, args: &str, code: i32) -> String {
         self.fail_with(args, code, &[])
     }
 
@@ -121,11 +126,14 @@ impl Folder {
         assert_eq!(self.names(), before, "`{args}` failed and left something behind");
         assert_eq!(outcome.stdout, "", "`{args}` failed: results belong to standard output only");
         assert!(!outcome.stderr.contains("panicked"), "`{args}`: {outcome:?}");
-        outcome.message().unwrap_or_else(|| panic!("`{args}` should say `error: …`: {outcome:?}")).to_owned()
+        outcome
+            .error_message()
+            .unwrap_or_else(|| panic!("`{args}` should say `error: …`: {outcome:?}"))
+            .to_owned()
     }
 
     /// Checks that a volume is refused: `info` and `render` fail with one of these codes, quickly, and name the file.
-    pub(crate) fn refuse(&self, file: &str, codes: &[i32]) -> String {
+    pub(crate) fn check_refused(&self, file: &str, codes: &[i32]) -> String {
         let before = self.names();
         let mut said = String::new();
         for args in [format!("info {file}"), format!("render {file} -o out.png --size 16x16")] {
@@ -136,7 +144,7 @@ impl Folder {
             let name = file.split_whitespace().next().unwrap_or_default();
             let name = name.rsplit('/').next().unwrap_or(name);
             assert!(outcome.stderr.contains(name), "`{args}` should name the file: {outcome:?}");
-            assert!(outcome.took < PROMPT, "`{args}` took {:?}", outcome.took);
+            assert!(outcome.took < REFUSAL_TIMEOUT, "`{args}` took {:?}", outcome.took);
             assert_eq!(self.names(), before, "`{args}` failed and left something behind");
             said = outcome.stderr;
         }

@@ -3,24 +3,25 @@
 use chiaroscuro::data::Volume;
 use chiaroscuro::gpu::Renderer;
 use chiaroscuro::model::{LightShape, Settings, ShadowAlgorithm};
-use chiaroscuro::reference::{Options, Reference, Rounding};
+use chiaroscuro::reference::{Reference, ReferenceOptions, Rounding};
 use glam::DVec3;
 
-use crate::common::{Dataset, attenuation, context, render};
-use crate::compare::{compare, flat32, flat64, wide};
+use crate::common::{Dataset, context, full_attenuation, render};
+use crate::compare::{channels_f32, channels_f64, compare, to_f64};
 use crate::scenes;
 use crate::thresholds::SAME_WEIGHTS;
 
 mod area_lights;
-mod bounces;
 mod colored_shadows;
 mod gather;
 mod labels;
 mod limit;
+mod multiple_scattering;
 pub(crate) mod mutations;
 mod preintegrated;
 mod presence;
 mod scatter;
+mod scatter_mutations;
 mod sky;
 
 const SIZE: [u32; 2] = [96, 80];
@@ -45,8 +46,8 @@ pub(crate) fn check_against(
 pub(crate) fn check_volume(name: &str, volume: Volume, settings: &Settings, rounding: Option<Rounding>) {
     let loaded = Dataset::new(volume);
     let context = context();
-    let options = Options { rounding, ..Options::default() };
-    let drawn = settings.as_drawn(loaded.volume());
+    let options = ReferenceOptions { rounding, ..ReferenceOptions::default() };
+    let drawn = settings.resolved_for(loaded.volume());
     let reference = Reference::new(loaded.volume(), &drawn, options);
     let mut renderer = Renderer::new(&context).expect("a renderer");
     let mut failures = Vec::new();
@@ -61,17 +62,23 @@ pub(crate) fn check_volume(name: &str, volume: Volume, settings: &Settings, roun
         for (view, expected) in sheets.iter().enumerate() {
             let found = renderer.light_sheets(&loaded, settings, light, view).expect("sheets are read back");
             let what = format!("{name}: sheets of light {light}, view {view}");
-            failures.extend(compare(&what, &wide(&found), &expected.deposits.concat(), SAME_WEIGHTS).err());
+            failures.extend(compare(&what, &to_f64(&found), &expected.deposits.concat(), SAME_WEIGHTS).err());
         }
-        let found = attenuation(&mut renderer, &loaded, settings, light);
+        let found = full_attenuation(&mut renderer, &loaded, settings, light);
         let expected = reference.attenuation(light);
         let what = format!("{name}: light volume {light}");
-        failures.extend(compare(&what, &wide(&found), &expected.values, SAME_WEIGHTS).err());
+        failures.extend(compare(&what, &to_f64(&found), &expected.values, SAME_WEIGHTS).err());
     }
     let found = render(&mut renderer, &loaded, settings, SIZE);
     let expected = reference.picture(SIZE, &reference.attenuations());
     failures.extend(
-        compare(&format!("{name}: picture"), &flat32(&found.light), &flat64(&expected), SAME_WEIGHTS).err(),
+        compare(
+            &format!("{name}: picture"),
+            &channels_f32(&found.linear),
+            &channels_f64(&expected),
+            SAME_WEIGHTS,
+        )
+        .err(),
     );
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }

@@ -1,21 +1,21 @@
 //! Mutation tests of pre-integrated slabs: the comparison with the reference detects mistakes.
 
-use chiaroscuro::model::{Settings, Slabs};
-use chiaroscuro::reference::Fault;
+use chiaroscuro::model::{Settings, SlabMode};
+use chiaroscuro::reference::ReferenceFault;
 
-use super::mutations::{disagree_in, in_shader};
+use super::mutations::{assert_in_shader, differs_in_look};
 use crate::scenes;
 
 /// Look with pre-integrated slabs for the eye.
 fn look() -> Settings {
     let mut settings = scenes::look();
-    settings.sampling.slabs = Slabs::Preintegrated;
+    settings.sampling.slabs = SlabMode::Preintegrated;
     settings
 }
 
 #[test]
 fn undamaged_preintegrated_slabs_agree() {
-    assert!(!disagree_in(&look(), 40, "\u{0}", "", Fault::None));
+    assert!(!differs_in_look(&look(), 40, "\u{0}", "", ReferenceFault::None));
 }
 
 #[test]
@@ -31,7 +31,10 @@ fn damaged_preintegrated_slabs_are_noticed() {
         ("const LAYER_STEPS = 4", "const LAYER_STEPS = 1"),
     ];
     for (from, to) in damages {
-        in_shader("eye/gather.wgsl", from);
-        assert!(disagree_in(&look(), 40, from, to, Fault::None), "the comparison does not notice {to:?}");
+        assert_in_shader("eye/gather.wgsl", from);
+        assert!(
+            differs_in_look(&look(), 40, from, to, ReferenceFault::None),
+            "the comparison does not notice {to:?}"
+        );
     }
 }

@@ -3,7 +3,8 @@
 
 use chiaroscuro::data::{Samples, Volume};
 use chiaroscuro::model::{
-    Classification, ControlPoint, Engine, Kernel, NearField, Settings, ShadowAlgorithm, TransferFunction,
+    ClassificationOrder, ControlPoint, NearFieldRay, ReconstructionKernel, RenderEngine, Settings,
+    ShadowAlgorithm, TransferFunction,
 };
 use glam::DVec3;
 
@@ -32,7 +33,7 @@ fn nested_balls() -> Dataset {
 }
 
 /// Look in which label 3 is blue and faint, label 9 red, and all others green.
-fn look(engine: Engine) -> Settings {
+fn look(engine: RenderEngine) -> Settings {
     let steps = [
         (0.5, [0.0, 1.0, 0.0], 0.0),
         (2.5, [0.0, 1.0, 0.0], 0.9),
@@ -48,20 +49,20 @@ fn look(engine: Engine) -> Settings {
     }
     let transfer = TransferFunction { points, ..TransferFunction::default() };
     let mut settings = Settings { transfer, ..base(engine, 0.1) };
-    settings.sampling.classification = Classification::Pre;
+    settings.sampling.classification = ClassificationOrder::Pre;
     settings.shading.specular = 0.0;
     settings
 }
 
-fn labels_between_are_not_seen(engine: Engine) {
+fn labels_between_are_not_seen(engine: RenderEngine) {
     let loaded = nested_balls();
     let mut renderer = renderer();
     let mut brightest = |settings: &Settings| {
         let picture = render(&mut renderer, &loaded, settings, [72, 72]);
-        let most = |channel: usize| picture.light.iter().map(|texel| texel[channel]).fold(0.0, f32::max);
+        let most = |channel: usize| picture.linear.iter().map(|texel| texel[channel]).fold(0.0, f32::max);
         [0, 1, 2].map(most)
     };
-    for kernel in [Kernel::BSpline, Kernel::Prefiltered] {
+    for kernel in [ReconstructionKernel::BSpline, ReconstructionKernel::Prefiltered] {
         for distance in [3.0, 16.0] {
             let mut settings = look(engine);
             settings.sampling.kernel = kernel;
@@ -70,7 +71,7 @@ fn labels_between_are_not_seen(engine: Engine) {
             assert!(red > 0.1 && blue > 0.02, "{kernel:?} from {distance}: {red} {blue}");
             assert!(green == 0.0, "{kernel:?} from {distance}: {green}");
             // Classified after interpolation, the shells appear.
-            settings.sampling.classification = Classification::Post;
+            settings.sampling.classification = ClassificationOrder::Post;
             let [_, green, _] = brightest(&settings);
             assert!(green > 0.02, "{kernel:?} from {distance}: {green}");
         }
@@ -90,7 +91,7 @@ fn labels_between_are_not_seen(engine: Engine) {
             .collect(),
         ..TransferFunction::default()
     };
-    for near_field in [NearField::Off, NearField::Long] {
+    for near_field in [NearFieldRay::Off, NearFieldRay::Long] {
         settings.shadows.near_field = near_field;
         settings.shadows.algorithm = ShadowAlgorithm::Splat;
         let shadowed = brightest(&settings);

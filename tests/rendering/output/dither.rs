@@ -19,7 +19,7 @@ fn background(top: f32, bottom: f32, transparent: bool) -> Vec<u8> {
     let options = RenderOptions { transparent, ..RenderOptions::default() };
     let loaded = Dataset::new(scenes::creature(8, DVec3::ONE));
     let picture = renderer.render(&loaded, &settings, SIZE, &options).expect("a picture");
-    picture.shown.chunks_exact(4).map(|texel| texel[0]).collect()
+    picture.display.chunks_exact(4).map(|texel| texel[0]).collect()
 }
 
 /// Largest difference between the mean over columns and eight rows and the gradient there, in steps of 8 bits.

@@ -1,6 +1,6 @@
 //! Pictures in the window: every byte is displayed unchanged, whatever the window's format.
 
-use chiaroscuro::gpu::{Context, WindowPainter};
+use chiaroscuro::gpu::{GpuContext, WindowPainter};
 
 use crate::common::context;
 use crate::thresholds::EIGHT_BITS;
@@ -15,7 +15,7 @@ fn picture() -> Vec<u8> {
 
 /// Bytes of a target after a drawing over black.
 pub(super) fn drawn(
-    context: &Context,
+    context: &GpuContext,
     format: wgpu::TextureFormat,
     draw: impl FnOnce(&mut wgpu::RenderPass<'_>),
 ) -> Vec<u8> {
@@ -72,11 +72,11 @@ fn pictures_reach_the_window_byte_for_byte() {
     let context = context();
     for format in [wgpu::TextureFormat::Rgba8Unorm, wgpu::TextureFormat::Rgba8UnormSrgb] {
         let painter = WindowPainter::new(&context.device, &context.queue, format).expect("a painter");
-        let shown = painter.place(None, SIZE, &picture(), true);
+        let shown = painter.upload(None, SIZE, &picture(), true);
         assert!(drawn(&context, format, |pass| shown.draw(pass, 255, 0)) == picture(), "{format:?}");
         // A second picture replaces the first.
         let black = vec![[0, 0, 0, 255]; (SIZE[0] * SIZE[1]) as usize].concat();
-        let shown = painter.place(Some(shown), SIZE, &black, true);
+        let shown = painter.upload(Some(shown), SIZE, &black, true);
         assert!(drawn(&context, format, |pass| shown.draw(pass, 255, 0)) == black, "{format:?}");
     }
 }
@@ -87,7 +87,7 @@ fn moved_pictures_are_moved_by_whole_pixels() {
     let context = context();
     let format = wgpu::TextureFormat::Rgba8Unorm;
     let painter = WindowPainter::new(&context.device, &context.queue, format).expect("a painter");
-    let shown = painter.place(None, SIZE, &picture(), true);
+    let shown = painter.upload(None, SIZE, &picture(), true);
     let [width, height] = SIZE.map(|n| n as usize);
     for moved in [-3_i16, 5] {
         let found = drawn(&context, format, |pass| shown.draw(pass, 255, moved));
@@ -108,7 +108,7 @@ fn a_fading_picture_lets_the_ground_through() {
     let floor = [40_u8, 80, 120];
     let filled = drawn(&context, format, |pass| painter.fill(pass, floor));
     assert!(filled.chunks(4).all(|pixel| pixel == [40, 80, 120, 255]), "{:?}", &filled[..4]);
-    let shown = painter.place(None, SIZE, &picture(), true);
+    let shown = painter.upload(None, SIZE, &picture(), true);
     for opacity in [0_u8, 85, 255] {
         let both = drawn(&context, format, |pass| {
             painter.fill(pass, floor);

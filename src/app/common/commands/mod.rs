@@ -4,21 +4,27 @@ mod names;
 
 use std::path::PathBuf;
 
-use super::places::PLACES;
-use super::reveal::Place;
+use super::reveal::SettingPlace;
+use super::searchable_settings::SEARCHABLE_SETTINGS;
 use crate::data::KindName;
-use crate::data::load::{Aspect, Choice, Thinning};
+use crate::data::load::{ChoiceAspect, Downsampling, VolumeChoice};
 use crate::model::{
-    COLOR_MAPS, DIGITS, Light, ObjectTurn, PRESETS, Preset, Rig, SceneAxis, Settings, StandardView,
+    COLOR_MAPS, DIGIT_KEYS, LightSettings, LightingRig, ObjectRotation, PRESETS, Preset, SceneAxis, Settings,
+    StandardView,
 };
 
 /// Subsamplings that commands and the data section offer.
-pub(crate) const THINNINGS: [Thinning; 5] =
-    [Thinning::None, Thinning::Every(2), Thinning::Average(2), Thinning::Every(4), Thinning::Average(4)];
+pub(crate) const SUBSAMPLINGS: [Downsampling; 5] = [
+    Downsampling::None,
+    Downsampling::Every(2),
+    Downsampling::Average(2),
+    Downsampling::Every(4),
+    Downsampling::Average(4),
+];
 
 /// Command that the user issues by a menu, key or button.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Command {
+pub(crate) enum AppCommand {
     /// Ask for a volume and open it.
     OpenDialog,
     /// Ask for a folder of slices and open it.
@@ -34,19 +40,19 @@ pub(crate) enum Command {
     /// Open a file or a built-in volume.
     Open(PathBuf),
     /// Open a recent file, and the volume of it that was open then.
-    OpenAgain(PathBuf, Choice),
+    OpenAgain(PathBuf, VolumeChoice),
     /// Show the chooser of the open file's volumes in an aspect.
-    Choose(Aspect),
+    ShowChooser(ChoiceAspect),
     /// Open the next (`true`) or the previous (`false`) volume of the open file.
-    StepChoice(Aspect, bool),
+    StepChoice(ChoiceAspect, bool),
     /// Open another volume of the open file; `true` keeps the look.
-    TakeChoice(Box<Choice>, bool),
+    OpenChoice(Box<VolumeChoice>, bool),
     /// Read the open volume again with another subsampling.
-    Thin(Thinning),
+    Subsample(Downsampling),
     /// Cancel opening and reading files.
     CancelOpening,
     /// Reopen the volume with the look of the previous run.
-    GoOn,
+    ReopenLast,
     /// Save the session to its file, or ask for a file.
     SaveSettings,
     /// Ask for settings and apply them.
@@ -54,7 +60,7 @@ pub(crate) enum Command {
     /// Copy the picture to the clipboard.
     CopyPicture,
     /// Toggle keeping the look for the next volume.
-    KeepLook,
+    ToggleKeepLook,
     /// Show the export dialog for pictures and turntables.
     Export,
     /// Cancel the export in progress.
@@ -78,29 +84,29 @@ pub(crate) enum Command {
     /// Look at the object from a standard view.
     LookFrom(StandardView),
     /// Turn the object over, or upright.
-    TurnObject(ObjectTurn),
+    TurnObject(ObjectRotation),
     /// Orbit the camera by 90° about the vertical, as if the object turned.
-    TurnRound,
+    RotateObject,
     /// Switch between perspective and orthographic projection.
     ToggleProjection,
     /// Save the view in the strip.
-    KeepView,
+    SaveView,
     /// Save the look in the strip.
-    KeepInStrip,
+    SaveLookInStrip,
     /// Save the view under a digit.
     StoreView(u8),
     /// Go to the view or look saved under a digit.
     RecallView(u8),
     /// Go to a saved view or look by its index; `true` takes the view of a look, too.
-    GoToKept(usize, bool),
+    GoToSaved(usize, bool),
     /// Replace a saved view or look by what is shown.
-    ReplaceKept(usize),
+    ReplaceSaved(usize),
     /// Compare two saved looks, or the picture (`None`) with one.
-    CompareKept(Option<usize>, usize),
+    CompareSaved(Option<usize>, usize),
     /// Export a contact sheet of all saved views and looks.
-    ExportKept,
+    ExportContactSheet,
     /// Show or hide the strip of saved views and looks.
-    ToggleKept,
+    ToggleStrip,
     /// Switch full screen on or off.
     ToggleFullScreen,
     /// Show or hide the light chips, bounding box, scale bar and orientation cube.
@@ -112,9 +118,9 @@ pub(crate) enum Command {
     /// Add a light beside the camera.
     AddLight,
     /// Replace the lights by a rig.
-    UseRig(Rig),
+    UseRig(LightingRig),
     /// Replace the lights by the given lights.
-    UseLights(Vec<Light>),
+    UseLights(Vec<LightSettings>),
     /// Replace the look by the given look.
     UseLook(Box<Settings>),
     /// Show the contact sheet of looks.
@@ -124,7 +130,7 @@ pub(crate) enum Command {
     /// Show the best positions for the selected light.
     SuggestLight,
     /// Ask for an environment map, and light the scene by it.
-    UseSurroundings,
+    UseEnvironmentMap,
     /// Show the contact sheet of presets.
     TryPresets,
     /// Select the next light of the list.
@@ -182,7 +188,7 @@ pub(crate) enum Command {
     /// Ask for settings to compare with.
     CompareWithFile,
     /// Reveal a setting in its section.
-    Reveal(Place),
+    Reveal(SettingPlace),
     /// Show or hide the help on keys and mouse.
     ShowHelp,
     /// Show the program's version and its graphics device.
@@ -190,84 +196,88 @@ pub(crate) enum Command {
 }
 
 /// Lists every command that can be found by its name.
-pub(crate) fn listed() -> Vec<Command> {
+pub(crate) fn searchable_commands() -> Vec<AppCommand> {
     let mut all = vec![
-        Command::OpenDialog,
-        Command::OpenFolder,
-        Command::OpenPath,
-        Command::NextFile,
-        Command::PreviousFile,
-        Command::GoOn,
-        Command::SaveSettings,
-        Command::LoadSettings,
-        Command::Export,
-        Command::CopyPicture,
-        Command::KeepLook,
-        Command::Undo,
-        Command::Redo,
-        Command::ToggleHistory,
-        Command::ToggleMessages,
-        Command::ResetView,
-        Command::FrameAll,
-        Command::TurnObject(ObjectTurn::Over),
-        Command::TurnRound,
-        Command::ToggleProjection,
-        Command::ToggleFullScreen,
-        Command::ToggleOverlay,
-        Command::ToggleProbe,
-        Command::ToggleCrop,
-        Command::TogglePlane,
-        Command::FacePlane,
-        Command::ToggleFloor,
-        Command::AddLight,
-        Command::TryLooks,
-        Command::TryLights,
-        Command::SuggestLight,
-        Command::UseSurroundings,
-        Command::TryPresets,
-        Command::NextLight,
-        Command::PreviousLight,
-        Command::Solo,
-        Command::Mute,
-        Command::Brighter,
-        Command::Dimmer,
-        Command::Balance,
-        Command::AutomaticTransfer,
-        Command::InvertTransfer,
-        Command::ImportTransfer,
-        Command::ExportTransfer,
-        Command::ToggleSide,
-        Command::ToggleTransfer,
-        Command::TogglePictureOnly,
-        Command::ToggleKept,
-        Command::Scale(1),
-        Command::Scale(-1),
-        Command::Scale(0),
-        Command::KeepView,
-        Command::KeepInStrip,
-        Command::ExportKept,
-        Command::ToggleHandles,
-        Command::ToggleCompare,
-        Command::CompareWithFile,
-        Command::ShowSlices,
-        Command::ShowLightVolume,
-        Command::ShowHelp,
-        Command::ShowAbout,
-        Command::Quit,
+        AppCommand::OpenDialog,
+        AppCommand::OpenFolder,
+        AppCommand::OpenPath,
+        AppCommand::NextFile,
+        AppCommand::PreviousFile,
+        AppCommand::ReopenLast,
+        AppCommand::SaveSettings,
+        AppCommand::LoadSettings,
+        AppCommand::Export,
+        AppCommand::CopyPicture,
+        AppCommand::ToggleKeepLook,
+        AppCommand::Undo,
+        AppCommand::Redo,
+        AppCommand::ToggleHistory,
+        AppCommand::ToggleMessages,
+        AppCommand::ResetView,
+        AppCommand::FrameAll,
+        AppCommand::TurnObject(ObjectRotation::TipBack),
+        AppCommand::RotateObject,
+        AppCommand::ToggleProjection,
+        AppCommand::ToggleFullScreen,
+        AppCommand::ToggleOverlay,
+        AppCommand::ToggleProbe,
+        AppCommand::ToggleCrop,
+        AppCommand::TogglePlane,
+        AppCommand::FacePlane,
+        AppCommand::ToggleFloor,
+        AppCommand::AddLight,
+        AppCommand::TryLooks,
+        AppCommand::TryLights,
+        AppCommand::SuggestLight,
+        AppCommand::UseEnvironmentMap,
+        AppCommand::TryPresets,
+        AppCommand::NextLight,
+        AppCommand::PreviousLight,
+        AppCommand::Solo,
+        AppCommand::Mute,
+        AppCommand::Brighter,
+        AppCommand::Dimmer,
+        AppCommand::Balance,
+        AppCommand::AutomaticTransfer,
+        AppCommand::InvertTransfer,
+        AppCommand::ImportTransfer,
+        AppCommand::ExportTransfer,
+        AppCommand::ToggleSide,
+        AppCommand::ToggleTransfer,
+        AppCommand::TogglePictureOnly,
+        AppCommand::ToggleStrip,
+        AppCommand::Scale(1),
+        AppCommand::Scale(-1),
+        AppCommand::Scale(0),
+        AppCommand::SaveView,
+        AppCommand::SaveLookInStrip,
+        AppCommand::ExportContactSheet,
+        AppCommand::ToggleHandles,
+        AppCommand::ToggleCompare,
+        AppCommand::CompareWithFile,
+        AppCommand::ShowSlices,
+        AppCommand::ShowLightVolume,
+        AppCommand::ShowHelp,
+        AppCommand::ShowAbout,
+        AppCommand::Quit,
     ];
-    all.extend(THINNINGS.map(Command::Thin));
-    all.extend(Aspect::ALL.map(Command::Choose));
+    all.extend(SUBSAMPLINGS.map(AppCommand::Subsample));
+    all.extend(ChoiceAspect::ALL.map(AppCommand::ShowChooser));
     all.extend(
-        Aspect::ALL.into_iter().flat_map(|aspect| [true, false].map(|on| Command::StepChoice(aspect, on))),
+        ChoiceAspect::ALL
+            .into_iter()
+            .flat_map(|aspect| [true, false].map(|on| AppCommand::StepChoice(aspect, on))),
     );
-    all.extend(KindName::choices().map(Command::TreatAs));
-    all.extend(StandardView::ALL.map(Command::LookFrom));
-    all.extend(SceneAxis::ALL.map(|axis| Command::TurnObject(ObjectTurn::Upright(axis))));
-    all.extend(Rig::ALL.map(Command::UseRig));
-    all.extend(PRESETS.map(Command::UsePreset));
-    all.extend(PLACES.iter().map(|(place, _)| Command::Reveal(*place)));
-    all.extend((0..COLOR_MAPS.len()).flat_map(|at| [false, true].map(|back| Command::UseColors(at, back))));
-    all.extend(DIGITS.map(Command::StoreView));
-    all.extend(DIGITS.map(Command::RecallView));
+    all.extend(KindName::choices().map(AppCommand::TreatAs));
+    all.extend(StandardView::ALL.map(AppCommand::LookFrom));
+    all.extend(SceneAxis::ALL.map(|axis| AppCommand::TurnObject(ObjectRotation::MakeUpright(axis))));
+    all.extend(LightingRig::ALL.map(AppCommand::UseRig));
+    all.extend(PRESETS.map(AppCommand::UsePreset));
+    all.extend(SEARCHABLE_SETTINGS.iter().map(|(place, _)| AppCommand::Reveal(*place)));
+    all.extend(
+        (0..COLOR_MAPS.len()).flat_map(|at| [false, true].map(|back| AppCommand::UseColors(at, back))),
+    );
+    all.extend(DIGIT_KEYS.map(AppCommand::StoreView));
+    all.extend(DIGIT_KEYS.map(AppCommand::RecallView));
     all
 }

@@ -22,7 +22,7 @@ use super::shortcuts::{are_letters_reserved, is_function_key};
 const SLOW_FRAME_S: f32 = 0.15;
 
 /// Longest frame for which clicks are stretched, in seconds: clicks further apart are never meant as a double click.
-const LONGEST_FRAME_S: f32 = 2.0;
+const MAX_STRETCHED_FRAME_S: f32 = 2.0;
 
 /// Factor by which the longest frame time decays per frame: a slow frame is forgotten after a dozen fast ones.
 const FRAME_DECAY: f32 = 0.8;
@@ -52,7 +52,7 @@ impl Default for InputPacing {
 
 /// Role of an event in the ordering.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Role {
+enum EventRole {
     /// Event that may share a frame with any other.
     Free,
     Move,
@@ -68,7 +68,7 @@ enum Role {
     },
 }
 
-impl Role {
+impl EventRole {
     /// Classifies an event. `next` is the event behind it; `is_typing`: letters are for a text.
     fn new(event: &Event, next: Option<&Event>, is_typing: bool) -> Self {
         match event {
@@ -80,7 +80,7 @@ impl Role {
             }
             Event::Key { key, pressed: true, modifiers, .. } => {
                 let leaves = leaves_field(*key, *modifiers);
-                if is_typing && !leaves && !steps(*key) {
+                if is_typing && !leaves && !steps_value(*key) {
                     Self::Character
                 } else {
                     // Space presses the button that has the focus.
@@ -103,7 +103,7 @@ fn leaves_field(key: Key, modifiers: Modifiers) -> bool {
 }
 
 /// Returns true if a key steps through values or rows, even while text is edited.
-fn steps(key: Key) -> bool {
+fn steps_value(key: Key) -> bool {
     matches!(key, Key::ArrowUp | Key::ArrowDown | Key::PageUp | Key::PageDown)
 }
 
@@ -116,41 +116,41 @@ impl InputPacing {
         let mut frame = Vec::new();
         let (mut has_moved, mut has_typed) = (false, false);
         while let Some(event) = self.waiting.pop_front() {
-            let role = Role::new(&event, self.waiting.front(), is_typing);
+            let role = EventRole::new(&event, self.waiting.front(), is_typing);
             let waits = match role {
-                Role::Free | Role::Move => false,
-                Role::Press => has_typed,
+                EventRole::Free | EventRole::Move => false,
+                EventRole::Press => has_typed,
                 // A dragged object reaches the end of the movement before it is released.
-                Role::Release => has_typed || has_moved,
-                Role::Character => !may_type,
-                Role::Command { types, .. } => has_typed || types && !may_type,
+                EventRole::Release => has_typed || has_moved,
+                EventRole::Character => !may_type,
+                EventRole::Command { types, .. } => has_typed || types && !may_type,
             };
             if waits {
                 self.waiting.push_front(event);
                 break;
             }
             match role {
-                Role::Free => frame.push(event),
-                Role::Move => {
+                EventRole::Free => frame.push(event),
+                EventRole::Move => {
                     has_moved = true;
                     frame.push(event);
                 }
-                Role::Character => {
+                EventRole::Character => {
                     has_typed = true;
                     frame.push(event);
                 }
-                Role::Press => {
-                    self.press(&mut frame, event);
+                EventRole::Press => {
+                    self.hand_on_press(&mut frame, event);
                     self.focus_settles = true;
                     break;
                 }
-                Role::Release => {
+                EventRole::Release => {
                     frame.push(event);
                     self.focus_settles = true;
                     break;
                 }
-                Role::Command { moves_focus, .. } => {
-                    self.command(&mut frame, event);
+                EventRole::Command { moves_focus, .. } => {
+                    self.hand_on_command(&mut frame, event);
                     self.focus_settles = moves_focus;
                     break;
                 }
@@ -161,16 +161,16 @@ impl InputPacing {
 
     /// Hands on a press. A click that has arrived as a whole stays together, at the position of its press: in
     /// separate frames, press and release might be further apart than a click may last.
-    fn press(&mut self, frame: &mut Vec<Event>, press: Event) {
+    fn hand_on_press(&mut self, frame: &mut Vec<Event>, press: Event) {
         let Event::PointerButton { pos: origin, button, .. } = press else { return };
         frame.push(press);
         let is_near = |at: &Pos2| at.distance(origin) <= self.click_distance;
         let goes_by = |event: &Event| match event {
             Event::PointerMoved(to) => is_near(to),
-            event => Role::new(event, None, false) == Role::Free,
+            event => EventRole::new(event, None, false) == EventRole::Free,
         };
         let Some(end) = self.waiting.iter().position(|event| !goes_by(event)) else { return };
-        let Some(released) = released_at(&self.waiting[end], button).filter(is_near) else { return };
+        let Some(released) = release_position(&self.waiting[end], button).filter(is_near) else { return };
         for event in self.waiting.drain(..=end) {
             match event {
                 Event::PointerMoved(_) => {}
@@ -186,7 +186,7 @@ impl InputPacing {
     }
 
     /// Hands on a key with its text and its repetitions: a key held for a second must not take thirty frames.
-    fn command(&mut self, frame: &mut Vec<Event>, command: Event) {
+    fn hand_on_command(&mut self, frame: &mut Vec<Event>, command: Event) {
         let held = match &command {
             Event::Key { key, modifiers, .. } => Some((*key, *modifiers)),
             _ => None,
@@ -208,7 +208,7 @@ impl InputPacing {
 
     /// Extends the time limits of clicks by the time that slow frames take from them.
     fn stretch_clicks(&mut self, ctx: &egui::Context) {
-        let last_s = ctx.input(|input| input.stable_dt).min(LONGEST_FRAME_S);
+        let last_s = ctx.input(|input| input.stable_dt).min(MAX_STRETCHED_FRAME_S);
         self.frame_s = last_s.max(FRAME_DECAY * self.frame_s);
         // The press may be handled one frame after its arrival, and the release another frame later.
         let more_s = if self.frame_s > SLOW_FRAME_S { 2.0 * f64::from(self.frame_s) } else { 0.0 };
@@ -222,7 +222,7 @@ impl InputPacing {
 }
 
 /// Returns the position at which a button was released, if the event is its release.
-fn released_at(event: &Event, of: PointerButton) -> Option<Pos2> {
+fn release_position(event: &Event, of: PointerButton) -> Option<Pos2> {
     match event {
         Event::PointerButton { pos, button, pressed: false, .. } if *button == of => Some(*pos),
         _ => None,

@@ -12,14 +12,14 @@ use crate::app::text::sections::ALL;
 const HEIGHT: f32 = 24.0;
 
 /// Shows one icon for each section, with a dot where `is_active`.
-pub(in crate::app::panels) fn show(ui: &mut Ui, is_active: impl Fn(&str) -> bool) {
+pub(crate) fn show(ui: &mut Ui, is_active: impl Fn(&str) -> bool) {
     let size = Vec2::new(ui.available_width() / ALL.len() as f32, HEIGHT);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 0.0;
         for title in ALL {
             let (area, response) = ui.allocate_exact_size(size, Sense::click());
-            response.widget_info(|| WidgetInfo::labeled(Role::Button, true, text::sections::go_to(title)));
-            reveal::report(ui.ctx(), area, || text::sections::go_to(title));
+            response.widget_info(|| WidgetInfo::labeled(Role::Button, true, text::sections::tab_name(title)));
+            reveal::report_area(ui.ctx(), area, || text::sections::tab_name(title));
             let visuals = *ui.style().interact(&response);
             if response.hovered() || response.has_focus() {
                 ui.painter().rect(

@@ -2,7 +2,7 @@
 //!
 //! Each is a pass over all voxels on a thread; so is the search for the outline of the object.
 
-pub(in crate::app) mod corrected;
-pub(in crate::app) mod framed;
-pub(in crate::app) mod treat_as;
-pub(in crate::app) mod upright;
+pub(crate) mod corrections;
+pub(crate) mod data_kind;
+pub(crate) mod orientation;
+pub(crate) mod outline;

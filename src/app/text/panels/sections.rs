@@ -14,11 +14,11 @@ pub(crate) const DATA: &str = "Data";
 pub(crate) const ALL: [&str; 9] = [LIGHTS, SHADOWS, SOFT_LIGHT, SHADING, CUTS, FLOOR, CAMERA, COMPARE, DATA];
 
 /// Accessible name of the button that jumps to a section.
-pub(crate) fn go_to(title: &str) -> String {
+pub(crate) fn tab_name(title: &str) -> String {
     format!("Go to {title}")
 }
 
 /// Accessible name of the dot beside a title, shown while the section has an effect.
-pub(crate) fn active(title: &str) -> String {
+pub(crate) fn active_name(title: &str) -> String {
     format!("{title}: something is on")
 }

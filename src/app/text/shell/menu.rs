@@ -12,12 +12,12 @@ pub(crate) const KEEP_LOOK_TIP: &str =
     "Lights, transfer function and shadows stay when another file is opened";
 
 pub(crate) const LOOK_FROM: &str = "Look from";
-pub(crate) const KEPT: &str = "Saved views";
+pub(crate) const SAVED_VIEWS: &str = "Saved views";
 pub(crate) const PERSPECTIVE: &str = "Perspective";
 pub(crate) const ORTHOGRAPHIC: &str = "Orthographic";
 
 /// Submenu of the time budget of a preview.
-pub(crate) const WHILE_MOVING: &str = "Quality while moving";
+pub(crate) const PREVIEW_BUDGET: &str = "Quality while moving";
 pub(crate) const AUTOMATIC: &str = "Automatic";
 pub(crate) const SMOOTH: &str = "Smooth (16 ms)";
 pub(crate) const BALANCED: &str = "Balanced (33 ms)";
@@ -30,13 +30,13 @@ pub(crate) const SIZE: &str = "Interface size";
 /// Submenu of the colour theme.
 pub(crate) const THEME: &str = "Theme";
 pub(crate) const DARK: &str = "Dark";
-pub(crate) const BRIGHT: &str = "Light";
+pub(crate) const LIGHT_THEME: &str = "Light";
 pub(crate) const AS_SYSTEM: &str = "Same as system";
 
 pub(crate) const USE_RIG: &str = "Light rigs";
 
 /// Undo or redo entry, with the change that it affects.
-pub(crate) fn step(label: &str, what: Option<&str>) -> String {
+pub(crate) fn history_entry(label: &str, what: Option<&str>) -> String {
     what.map_or_else(|| label.to_owned(), |what| format!("{label} {what}"))
 }
 

@@ -1,7 +1,7 @@
 //! Texts of opening volumes and looks, and of the window's title.
 
-use crate::data::load::Several;
-use crate::data::plain;
+use crate::data::load::VolumeAlternatives;
+use crate::data::sanitised;
 use std::fmt::Display;
 use std::path::Path;
 
@@ -10,7 +10,7 @@ pub(crate) const PROGRAM: &str = "Chiaroscuro";
 
 /// Phases of opening a volume, in this order.
 pub(crate) const READING: &str = "Reading";
-pub(crate) const FITTING: &str = "Trying what the graphics adapter can hold";
+pub(crate) const MEASURING_ADAPTER: &str = "Trying what the graphics adapter can hold";
 pub(crate) const COUNTING: &str = "Counting values";
 pub(crate) const UPLOADING: &str = "Uploading";
 pub(crate) const FIRST_LOOK: &str = "Finding a first look";
@@ -23,8 +23,8 @@ pub(crate) const SETTINGS_NOT_SAVED: &str = "The session was not saved";
 pub(crate) const SESSION_NOT_LOADED: &str = "The session was not loaded";
 
 /// Warnings about settings that were loaded nevertheless.
-pub(crate) const OF_ANOTHER_VOLUME: &str = "The settings were made for another volume: Open… opens that one";
-pub(crate) const OF_OTHER_VALUES: &str = "The settings were made for other values than the file has now";
+pub(crate) const OTHER_VOLUME: &str = "The settings were made for another volume: Open… opens that one";
+pub(crate) const OTHER_VALUES: &str = "The settings were made for other values than the file has now";
 
 /// Desktop message when no window opens: the failure, then in a second paragraph the reason and the remedy.
 pub(crate) fn no_window(why: &str) -> String {
@@ -39,22 +39,22 @@ pub(crate) fn title(volume: &str) -> String {
 }
 
 /// Message after a session was written to a file.
-pub(crate) fn saved(file: &Path) -> String {
+pub(crate) fn session_saved(file: &Path) -> String {
     format!("Saved {}", file.display())
 }
 
 /// Headline when the loader of a volume panicked.
-pub(crate) fn failed(source: &Path) -> String {
+pub(crate) fn loader_panicked(source: &Path) -> String {
     format!("Opening {} failed", source.display())
 }
 
 /// Details of the error when a loader panicked.
-pub(crate) fn stopped(panic: &str) -> String {
+pub(crate) fn panic_details(panic: &str) -> String {
     format!("the loader stopped unexpectedly: {panic}")
 }
 
 /// Error for a file of zero bytes.
-pub(crate) fn empty(source: &Path) -> String {
+pub(crate) fn empty_file(source: &Path) -> String {
     format!("{} is empty: copy it again", source.display())
 }
 
@@ -64,21 +64,21 @@ pub(crate) fn not_shown(source: &Path) -> String {
 }
 
 /// Message that voxels were averaged because the graphics adapter cannot hold all of them.
-pub(crate) fn averaged(before: [usize; 3], after: [usize; 3]) -> String {
+pub(crate) fn downsampled(before: [usize; 3], after: [usize; 3]) -> String {
     let [before, after] = [before, after].map(crate::app::text::panels::data::dimensions);
     format!("{before} voxels are shown as {after}: the graphics adapter cannot hold more")
 }
 
 /// Message that the first of several volumes in a file is shown: none was selected, or the selected one does not
 /// exist.
-pub(crate) fn first_of_several(several: &Several) -> String {
+pub(crate) fn first_of_several(several: &VolumeAlternatives) -> String {
     let (count, plural) = (several.offers.len(), several.dimension.plural());
     let first = several.offers.first().map_or("", |first| first.name.as_str());
     let first = if first.is_empty() { String::new() } else { format!(" ({first})") };
-    match &several.missed {
+    match &several.unmatched_selection {
         None => format!("The first of {count} {plural} is shown{first}: the section Data offers the others"),
         Some(said) => {
-            let said = plain(said, 60);
+            let said = sanitised(said, 60);
             format!("{said} is none of the {count} {plural} that there are now: the first is shown{first}")
         }
     }
@@ -87,19 +87,19 @@ pub(crate) fn first_of_several(several: &Several) -> String {
 /// Message that slices were dropped and their whole folder is opened.
 pub(crate) fn folder_of_dropped(count: usize, folder: &Path) -> String {
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
-    format!("{count} files were dropped: all slices of their folder {} are opened", plain(&name, 60))
+    format!("{count} files were dropped: all slices of their folder {} are opened", sanitised(&name, 60))
 }
 
 /// Message that some slices of a folder were dropped, and only these are opened.
-pub(crate) fn some_of_folder(count: usize, folder: &Path) -> String {
+pub(crate) fn part_of_folder(count: usize, folder: &Path) -> String {
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
-    format!("{count} slices of the folder {} are opened, those that were dropped", plain(&name, 60))
+    format!("{count} slices of the folder {} are opened, those that were dropped", sanitised(&name, 60))
 }
 
 /// Message that unrelated files were dropped, and the first is opened.
 pub(crate) fn first_of_dropped(count: usize, first: &Path) -> String {
     let name = first.file_name().unwrap_or_default().to_string_lossy();
-    format!("{count} files were dropped: the first, {}, is opened", plain(&name, 60))
+    format!("{count} files were dropped: the first, {}, is opened", sanitised(&name, 60))
 }
 
 /// Message when the open volume does not lie in a folder.

@@ -1,18 +1,18 @@
 //! Texts of the status bar.
 
-use crate::app::text::{Named, named};
+use crate::app::text::{ControlText, control_text};
 use crate::data::load::human_bytes;
-use crate::gpu::Stage;
+use crate::gpu::RenderStage;
 
 pub(crate) const NO_VOLUME: &str = "No volume";
 /// State of the picture: full quality, preview or failure.
-pub(crate) const SHARP: &str = "Sharp";
+pub(crate) const FULL_QUALITY: &str = "Sharp";
 pub(crate) const PREVIEW: &str = "Preview";
 pub(crate) const NOT_RENDERED: &str = "Not rendered";
 pub(crate) const DEVICE_LOST: &str = "Graphics device lost";
 
 /// Phase of opening a file, with the bytes read so far and in total.
-pub(crate) fn opening(phase: &str, bytes: Option<[u64; 2]>, source: &str) -> String {
+pub(crate) fn opening_progress(phase: &str, bytes: Option<[u64; 2]>, source: &str) -> String {
     match bytes {
         Some([done, total]) => {
             let [done, total] = [done, total].map(|bytes| human_bytes(bytes.into()));
@@ -23,43 +23,45 @@ pub(crate) fn opening(phase: &str, bytes: Option<[u64; 2]>, source: &str) -> Str
 }
 
 /// Name of the work of a render stage.
-fn name_of(stage: Stage) -> &'static str {
+fn stage_name(stage: RenderStage) -> &'static str {
     match stage {
-        Stage::Upload | Stage::Pyramid => "Preparing volume",
-        Stage::LightMarch | Stage::LightBackproject | Stage::LightRaycast => "Filling light",
-        Stage::Sky => "Filling sky light",
-        Stage::Bounces => "Scattering light",
-        Stage::Eye | Stage::Display => "Refining",
+        RenderStage::Upload | RenderStage::Pyramid => "Preparing volume",
+        RenderStage::LightMarch | RenderStage::LightBackproject | RenderStage::LightRaycast => {
+            "Filling light"
+        }
+        RenderStage::Sky => "Filling sky light",
+        RenderStage::ScatteredLight => "Scattering light",
+        RenderStage::Eye | RenderStage::Display => "Refining",
     }
 }
 
 /// Current stage of a full-quality picture, with its overall progress from 0 to 1.
-pub(crate) fn refining(share: f32, stage: Stage) -> String {
-    format!("{} {:.0} %", name_of(stage), share * 100.0)
+pub(crate) fn refinement_progress(share: f32, stage: RenderStage) -> String {
+    format!("{} {:.0} %", stage_name(stage), share * 100.0)
 }
 
 /// Background tasks beside the rendering of pictures.
 pub(crate) const CORRECTING: &str = "Correcting volume";
-pub(crate) const MAKING_LOOK: &str = "Preparing look";
+pub(crate) const PREPARING_LOOK: &str = "Preparing look";
 pub(crate) const PLACING_LIGHTS: &str = "Placing lights";
 pub(crate) const BALANCING: &str = "Balancing lights";
 
 /// Tooltip of the most recent undo or redo.
-pub(crate) const WENT_TIP: &str = "Shows the list of all steps";
+pub(crate) const HISTORY_TIP: &str = "Shows the list of all steps";
 
 pub(crate) const EXPORTING_TIP: &str = "Shows the window of the export";
 
 /// Progress of an export, in pictures or parts of one.
-pub(crate) fn exporting(done: u32, total: u32) -> String {
+pub(crate) fn export_progress(done: u32, total: u32) -> String {
     if total > 1 { format!("Exporting, {done} of {total}") } else { "Exporting".to_owned() }
 }
 
 /// Button that shows the render statistics.
-pub(crate) const PERFORMANCE: Named =
-    named("Performance", "Shows how long pictures take, their memory, and the graphics device");
+pub(crate) const PERFORMANCE: ControlText =
+    control_text("Performance", "Shows how long pictures take, their memory, and the graphics device");
 
 /// Statistics of the renderer for display.
-pub(crate) struct Figures<'a> {
+pub(crate) struct RenderStatisticsText<'a> {
     /// Duration of the last full-quality picture, in ms.
     pub full_ms: Option<f64>,
     /// Duration of the last preview, in ms.
@@ -81,7 +83,7 @@ pub(crate) struct Figures<'a> {
 }
 
 /// Rows of the statistics, each a name and a formatted value.
-pub(crate) fn figures(figures: &Figures<'_>) -> Vec<(&'static str, String)> {
+pub(crate) fn statistics(figures: &RenderStatisticsText<'_>) -> Vec<(&'static str, String)> {
     let ms = |ms: Option<f64>| ms.map_or_else(|| "–".to_owned(), |ms| format!("{ms:.0} ms"));
     let software = if figures.is_software { " (software)" } else { "" };
     let mut rows = vec![

@@ -1,6 +1,6 @@
 //! Texts of the picture and of the comparison in it.
 
-use crate::app::text::{Named, named};
+use crate::app::text::{ControlText, control_text};
 
 /// Accessible name of the picture.
 pub(crate) const PICTURE: &str = "Picture";
@@ -8,15 +8,17 @@ pub(crate) const PICTURE: &str = "Picture";
 pub(crate) const DIVIDER: &str = "Divider";
 
 /// Message over a picture in which nothing is visible.
-pub(crate) const NOTHING_SEEN: &str =
+pub(crate) const NOTHING_VISIBLE: &str =
     "Nothing of the volume is visible: it is transparent, too small, or outside of the picture";
-pub(crate) const SHOW_SOMETHING: Named = named(
+pub(crate) const SHOW_SOMETHING: ControlText = control_text(
     "Show something",
     "Takes a transfer function that shows the twentieth of the voxels with the highest values, the robust range, and \
      light that follows the eye's curve",
 );
-pub(crate) const RESET_TRANSFER: Named =
-    named("Reset transfer function", "Takes back the transfer function with which the volume was opened");
+pub(crate) const RESET_TRANSFER: ControlText = control_text(
+    "Reset transfer function",
+    "Takes back the transfer function with which the volume was opened",
+);
 
 /// Caption of the row of common CT presets.
 pub(crate) const CT_LOOKS: &str = "CT:";
@@ -29,6 +31,6 @@ pub(crate) fn difference(left: &str, right: &str) -> String {
 }
 
 /// Error metrics between two looks, on a scale of 255.
-pub(crate) fn distance(rmse: f64, largest: f64) -> String {
+pub(crate) fn error_metrics(rmse: f64, largest: f64) -> String {
     format!("RMSE {rmse:.2} of 255, largest {largest}")
 }

@@ -8,7 +8,7 @@ pub(crate) const SUGGESTIONS: &str = "Suggested lights";
 pub(crate) const PRESETS: &str = "Try presets";
 
 /// Progress of the thumbnails, with their total number.
-pub(crate) fn trying(done: usize, count: usize) -> String {
+pub(crate) fn progress(done: usize, count: usize) -> String {
     if count == 0 {
         "Trying them on your volume".to_owned()
     } else {
@@ -17,22 +17,22 @@ pub(crate) fn trying(done: usize, count: usize) -> String {
 }
 pub(crate) const AGAIN: &str = "Refresh";
 /// Hint below the small, coarse pictures.
-pub(crate) const QUALITY: &str = "Click to apply";
+pub(crate) const CLICK_HINT: &str = "Click to apply";
 pub(crate) const USE_TIP: &str = "Use it";
 
 /// Reason why no light can be suggested.
 pub(crate) const NO_LIGHT: &str = "There is no light to be placed: add one, or select one";
 
 /// Name of the unchanged picture beside the suggestions.
-pub(crate) const AS_IT_IS: &str = "As it is";
+pub(crate) const UNCHANGED: &str = "As it is";
 
 /// Name of a suggested light position, numbered from 1 with the best first.
-pub(crate) fn suggestion(light: &str, number: usize) -> String {
+pub(crate) fn suggestion_name(light: &str, number: usize) -> String {
     format!("{light}, suggestion {number}")
 }
 
 /// Name of a suggested look, numbered from 1.
-pub(crate) fn look(number: usize, name: &str) -> String {
+pub(crate) fn look_name(number: usize, name: &str) -> String {
     format!("{number} · {name}")
 }
 
@@ -42,7 +42,7 @@ pub(crate) fn use_look(name: &str) -> String {
 }
 
 /// Name of a light position by the hour of a clock face.
-pub(crate) fn at_hour(light: &str, hour: u32) -> String {
+pub(crate) fn clock_position(light: &str, hour: u32) -> String {
     format!("{light} at {hour} o'clock")
 }
 

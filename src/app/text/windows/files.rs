@@ -5,7 +5,7 @@ use std::path::Path;
 
 /// Wording of a request for a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Question {
+pub(crate) struct FileRequest {
     /// Title of the desktop's file dialog, and of the window for typing a path.
     pub title: &'static str,
     /// Hint in the empty field of the typing window.
@@ -14,46 +14,53 @@ pub(crate) struct Question {
     pub verb: &'static str,
 }
 
-pub(crate) const OPEN_VOLUME: Question =
-    Question { title: "Open volume", hint: "a volume, a folder of slices, or builtin:chair", verb: "Open" };
-pub(crate) const OPEN_FOLDER: Question =
-    Question { title: "Open a folder of slices", hint: "a folder of DICOM files or pictures", verb: "Open" };
-pub(crate) const VOLUME_OF_LOOK: Question = Question { title: "Open the volume of the look", ..OPEN_VOLUME };
-pub(crate) const LOAD_SETTINGS: Question = Question {
+pub(crate) const OPEN_VOLUME: FileRequest = FileRequest {
+    title: "Open volume",
+    hint: "a volume, a folder of slices, or builtin:chair",
+    verb: "Open",
+};
+pub(crate) const OPEN_FOLDER: FileRequest = FileRequest {
+    title: "Open a folder of slices",
+    hint: "a folder of DICOM files or pictures",
+    verb: "Open",
+};
+pub(crate) const VOLUME_OF_LOOK: FileRequest =
+    FileRequest { title: "Open the volume of the look", ..OPEN_VOLUME };
+pub(crate) const LOAD_SETTINGS: FileRequest = FileRequest {
     title: "Load session or settings",
     hint: "a .json file, or a .png or .exr picture that was exported",
     verb: "Load",
 };
-pub(crate) const COMPARE_SETTINGS: Question =
-    Question { title: "Compare with settings", hint: LOAD_SETTINGS.hint, verb: "Compare" };
-pub(crate) const SAVE_SETTINGS: Question =
-    Question { title: "Save session", hint: "a .json file", verb: "Save" };
-pub(crate) const SURROUNDINGS: Question = Question {
+pub(crate) const COMPARE_SETTINGS: FileRequest =
+    FileRequest { title: "Compare with settings", hint: LOAD_SETTINGS.hint, verb: "Compare" };
+pub(crate) const SAVE_SETTINGS: FileRequest =
+    FileRequest { title: "Save session", hint: "a .json file", verb: "Save" };
+pub(crate) const OPEN_ENVIRONMENT_MAP: FileRequest = FileRequest {
     title: "Light by surroundings",
     hint: "a panorama of all directions: .hdr, .exr, .png, .jpg",
     verb: "Use",
 };
 /// File filter for environment maps.
-pub(crate) const PANORAMAS: &str = "Panoramas";
-pub(crate) const IMPORT_TRANSFER: Question = Question {
+pub(crate) const ENVIRONMENT_MAPS: &str = "Panoramas";
+pub(crate) const IMPORT_TRANSFER: FileRequest = FileRequest {
     title: "Import transfer function",
     hint: "ParaView, AGAVE .json, Slicer .vp, Inviwo .itf, Voreen .tfi, MRIcroGL .clut, ImageJ .lut",
     verb: "Import",
 };
-pub(crate) const EXPORT_TRANSFER: Question = Question {
+pub(crate) const EXPORT_TRANSFER: FileRequest = FileRequest {
     title: "Export transfer function",
     hint: "ParaView .json, Slicer .vp or .vp.json, Inviwo .itf, MRIcroGL .clut, ImageJ .lut, \
            our own .preset.json",
     verb: "Write",
 };
-pub(crate) const EXPORT_PICTURE: Question = Question {
+pub(crate) const EXPORT_PICTURE: FileRequest = FileRequest {
     title: "Export picture",
     hint: ".png or .exr for a picture; .png, .gif, .mp4 or a folder for a turn",
     verb: "Use",
 };
-pub(crate) const EXPORT_KEPT: Question =
-    Question { title: "Contact sheet of what is kept", hint: "a .png file", verb: "Export" };
-pub(crate) const EXPORT_LIGHT: Question = Question {
+pub(crate) const EXPORT_CONTACT_SHEET: FileRequest =
+    FileRequest { title: "Contact sheet of what is kept", hint: "a .png file", verb: "Export" };
+pub(crate) const EXPORT_LIGHT: FileRequest = FileRequest {
     title: "Export light volume",
     hint: "a .nrrd file for the volume, a .png file for the slice",
     verb: "Export",
@@ -66,7 +73,7 @@ pub(crate) const DIALOG_IS_OPEN: &str = "A file dialog is open already; close th
 pub(crate) const REPLACE: &str = "Replace";
 
 /// Question before an existing file is overwritten.
-pub(crate) fn is_there_already(file: &Path) -> String {
+pub(crate) fn overwrite_question(file: &Path) -> String {
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     format!("{name} already exists. Replace it?")
 }
@@ -103,7 +110,7 @@ pub(crate) fn settings_not_read(file: &Path, err: impl Display) -> String {
 }
 
 /// Error when a settings file was read but is invalid.
-pub(crate) fn settings_not_used(file: &Path, err: impl Display) -> String {
+pub(crate) fn settings_invalid(file: &Path, err: impl Display) -> String {
     format!("could not use the settings: {err} ({})", file.display())
 }
 
@@ -113,6 +120,6 @@ pub(crate) fn transfer_not_read(file: &Path, err: impl Display) -> String {
 }
 
 /// Error when another program's transfer function was read but is invalid.
-pub(crate) fn transfer_not_used(file: &Path, err: impl Display) -> String {
+pub(crate) fn transfer_invalid(file: &Path, err: impl Display) -> String {
     format!("could not use the transfer function: {err} ({})", file.display())
 }

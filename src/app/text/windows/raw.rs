@@ -1,7 +1,7 @@
 //! Texts of the import dialog for raw volumes.
 
-use crate::app::text::{Named, named};
-use crate::data::load::raw::Evidence;
+use crate::app::text::{ControlText, control_text};
+use crate::data::load::raw::LayoutEvidence;
 use crate::data::load::{Endian, RawLayout};
 
 pub(crate) const TITLE: &str = "Import raw volume";
@@ -17,8 +17,8 @@ pub(crate) const FASTEST_AXIS_TIP: &str = "Width and height of a slice, and how 
 pub(crate) const NUMBER_TYPE: &str = "Number type";
 
 pub(crate) const BYTE_ORDER: &str = "Byte order";
-pub(crate) const LITTLE: Named = named("Little-endian", "Lowest byte first: usual");
-pub(crate) const BIG: Named = named("Big-endian", "Highest byte first");
+pub(crate) const LITTLE: ControlText = control_text("Little-endian", "Lowest byte first: usual");
+pub(crate) const BIG: ControlText = control_text("Big-endian", "Highest byte first");
 /// Text in place of the byte order for one-byte numbers.
 pub(crate) const NO_ORDER: &str = "Numbers of one byte have no order";
 
@@ -39,13 +39,13 @@ pub(crate) const HEADER_TIP: &str =
 pub(crate) const COMPRESSED: &str = "The file is compressed: how long it is inside is not known yet";
 pub(crate) const TOO_MANY: &str = "That is more than any file can hold";
 /// Button that adds the surplus bytes to the header.
-pub(crate) const ARE_HEADER: &str = "Skip them as a header";
+pub(crate) const SKIP_SURPLUS: &str = "Skip them as a header";
 /// Button that sets the header's length to 0.
 pub(crate) const WITHOUT_HEADER: &str = "No header";
 
 /// Heading of the list of likely layouts.
 pub(crate) const PROPOSALS: &str = "What its bytes suggest";
-pub(crate) const LOOKING: &str = "Comparing neighbouring voxels…";
+pub(crate) const ANALYSING: &str = "Comparing neighbouring voxels…";
 
 /// Captions of the three preview slices.
 pub(crate) const SLICES: [&str; 3] =
@@ -56,7 +56,7 @@ pub(crate) const READING_SLICES: &str = "All three should show the object.\n\nNo
 
 /// Uncompressed length of the file, with everything before the voxels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Length {
+pub(crate) struct RawLengthText {
     /// Length of the file in bytes.
     pub bytes: u64,
     /// True if the bytes were counted; false if the length comes from the trailer of a compressed file.
@@ -65,7 +65,7 @@ pub(crate) struct Length {
 
 /// Unit of the voxel spacing, possibly unknown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Unit {
+pub(crate) enum RawSpacingUnit {
     Unknown,
     Nanometres,
     Micrometres,
@@ -73,7 +73,7 @@ pub(crate) enum Unit {
     Metres,
 }
 
-impl Unit {
+impl RawSpacingUnit {
     pub(crate) const ALL: [Self; 5] =
         [Self::Unknown, Self::Nanometres, Self::Micrometres, Self::Millimetres, Self::Metres];
 
@@ -110,18 +110,18 @@ pub(crate) fn spacing_along(axis: &str) -> String {
 }
 
 /// Checkbox that also writes a header with this file name.
-pub(crate) fn write(header: &str) -> String {
+pub(crate) fn write_header(header: &str) -> String {
     format!("Also write {header} beside the file")
 }
 
 /// Checkbox that overwrites an existing header.
-pub(crate) fn rewrite(header: &str) -> String {
+pub(crate) fn rewrite_header(header: &str) -> String {
     format!("Rewrite {header}, which lies beside the file")
 }
 
 /// Verdict that the length of the file matches the layout.
-pub(crate) fn fits(bytes: u64, is_exact: bool) -> String {
-    let bytes = grouped(bytes);
+pub(crate) fn length_matches(bytes: u64, is_exact: bool) -> String {
+    let bytes = group_thousands(bytes);
     if is_exact {
         format!("Bytes fit: the file has just these {bytes}")
     } else {
@@ -130,13 +130,13 @@ pub(crate) fn fits(bytes: u64, is_exact: bool) -> String {
 }
 
 /// Verdict that the file has surplus bytes.
-pub(crate) fn longer(bytes: u64) -> String {
-    format!("{} bytes too many in the file", grouped(bytes))
+pub(crate) fn surplus_bytes(bytes: u64) -> String {
+    format!("{} bytes too many in the file", group_thousands(bytes))
 }
 
 /// Verdict that the file lacks bytes.
-pub(crate) fn shorter(found: u64, expected: u64) -> String {
-    let [missing, found, expected] = [expected - found, found, expected].map(grouped);
+pub(crate) fn missing_bytes(found: u64, expected: u64) -> String {
+    let [missing, found, expected] = [expected - found, found, expected].map(group_thousands);
     format!("{missing} bytes missing: the file has {found} of {expected}")
 }
 
@@ -151,7 +151,7 @@ pub(crate) fn not_read(error: &std::io::Error) -> String {
 }
 
 /// Summary of a raw layout in one line.
-pub(crate) fn layout(layout: &RawLayout) -> String {
+pub(crate) fn layout_summary(layout: &RawLayout) -> String {
     let [x, y, z] = layout.dims;
     let order = match layout.endian {
         _ if layout.voxel_type.bytes() == 1 => "",
@@ -160,18 +160,22 @@ pub(crate) fn layout(layout: &RawLayout) -> String {
     };
     let header = match layout.offset {
         0 => String::new(),
-        bytes => format!(", header of {} bytes", grouped(bytes)),
+        bytes => format!(", header of {} bytes", group_thousands(bytes)),
     };
     format!("{x} × {y} × {z}, {}{order}{header}", layout.voxel_type.name())
 }
 
 /// Evidence for a layout in one line: similarity of rows and slices, the file name and the length.
-pub(crate) fn why(evidence: &Evidence, layout: &RawLayout, length: Option<Length>) -> String {
+pub(crate) fn evidence_summary(
+    evidence: &LayoutEvidence,
+    layout: &RawLayout,
+    length: Option<RawLengthText>,
+) -> String {
     let percent = |share: f64| {
         let percent = share * 100.0;
         if percent >= 10.0 { format!("{percent:.0} %") } else { format!("{percent:.1} %") }
     };
-    let [_, row, slice] = evidence.neighbours;
+    let [_, row, slice] = evidence.neighbour_differences;
     let agreement = match (evidence.rows_agree, evidence.slices_agree) {
         (true, true) => {
             format!("rows and slices agree: neighbours differ by {} and {}", percent(row), percent(slice))
@@ -191,11 +195,11 @@ pub(crate) fn why(evidence: &Evidence, layout: &RawLayout, length: Option<Length
 }
 
 /// Confidence in the first proposal.
-pub(crate) fn verdict(first: Option<Evidence>) -> &'static str {
+pub(crate) fn confidence(first: Option<LayoutEvidence>) -> &'static str {
     match first {
         None => "Nothing that would fit was found",
-        Some(Evidence { is_clear: true, .. }) => "The first stands out; click one to take it over",
-        Some(Evidence { rows_agree: false, slices_agree: false, .. }) => {
+        Some(LayoutEvidence { is_clear: true, .. }) => "The first stands out; click one to take it over",
+        Some(LayoutEvidence { rows_agree: false, slices_agree: false, .. }) => {
             "None stands out: these are guesses by size alone"
         }
         Some(_) => "Several are alike: look at the slices; click one to take it over",
@@ -203,7 +207,7 @@ pub(crate) fn verdict(first: Option<Evidence>) -> &'static str {
 }
 
 /// Formats a number with its thousands separated.
-fn grouped(number: u64) -> String {
+fn group_thousands(number: u64) -> String {
     let digits = number.to_string();
     let mut grouped = String::new();
     for (at, digit) in digits.chars().enumerate() {
@@ -222,7 +226,7 @@ mod tests {
     #[test]
     fn thousands_are_apart() {
         for (number, expected) in [(0, "0"), (999, "999"), (1000, "1 000"), (14155776, "14 155 776")] {
-            assert_eq!(grouped(number), expected);
+            assert_eq!(group_thousands(number), expected);
         }
     }
 }

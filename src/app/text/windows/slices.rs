@@ -1,6 +1,6 @@
 //! Texts of the window of orthogonal slices.
 
-use crate::app::text::{Named, named};
+use crate::app::text::{ControlText, control_text};
 
 pub(crate) const TITLE: &str = "Slices";
 
@@ -14,20 +14,24 @@ pub(crate) const OPACITY: &str = "Opacity";
 pub(crate) const RAS_TIP: &str = "RAS: from left to right, from back to front and from feet to head, as in NIfTI; DICOM \
                                   counts the first two the other way round (LPS)";
 
-pub(crate) const LEVEL: Named =
-    named("Level", "The value that is a middle grey; drag a slice with the right button, up for brighter");
-pub(crate) const WIDTH: Named = named(
+pub(crate) const LEVEL: ControlText = control_text(
+    "Level",
+    "The value that is a middle grey; drag a slice with the right button, up for brighter",
+);
+pub(crate) const WIDTH: ControlText = control_text(
     "Window",
     "The width of the window: values from black to white; drag a slice with the right button, to the right for less contrast",
 );
-pub(crate) const COLORED: Named =
-    named("As in the picture", "Where the transfer function shows something, in its colours");
+pub(crate) const COLORED: ControlText =
+    control_text("As in the picture", "Where the transfer function shows something, in its colours");
 pub(crate) const HINT: &str = "Drag: move the cursor\nWheel: next slice\nRight drag: window and level";
 
 /// Display conventions for left and right of a body.
-pub(crate) const RADIOLOGICAL: Named =
-    named("Radiological", "A body's right is on the left of axial and coronal slices, as if it faced you");
-pub(crate) const NEUROLOGICAL: Named = named(
+pub(crate) const RADIOLOGICAL: ControlText = control_text(
+    "Radiological",
+    "A body's right is on the left of axial and coronal slices, as if it faced you",
+);
+pub(crate) const NEUROLOGICAL: ControlText = control_text(
     "Neurological",
     "A body's right is on the right of axial and coronal slices, as if seen from behind",
 );
@@ -43,13 +47,13 @@ pub(crate) fn label(number: i64, name: &str) -> String {
 }
 
 /// Accessible name of the slice across an axis.
-pub(crate) fn across(axis: usize) -> String {
+pub(crate) fn slice_name(axis: usize) -> String {
     format!("Slice across {}", ["x", "y", "z"][axis])
 }
 
 /// Accessible name of an anatomical slice across an axis, with the body's sides at the right, left, top and bottom.
-pub(crate) fn across_body(axis: usize, [right, left, top, bottom]: &[String; 4]) -> String {
-    format!("{}: {right} right, {left} left, {top} top, {bottom} bottom", across(axis))
+pub(crate) fn anatomical_slice_name(axis: usize, [right, left, top, bottom]: &[String; 4]) -> String {
+    format!("{}: {right} right, {left} left, {top} top, {bottom} bottom", slice_name(axis))
 }
 
 pub(crate) const SAGITTAL: &str = "Sagittal";
@@ -57,7 +61,7 @@ pub(crate) const CORONAL: &str = "Coronal";
 pub(crate) const AXIAL: &str = "Axial";
 
 /// Axes that span the slices across an axis.
-pub(crate) fn span(axis: usize) -> &'static str {
+pub(crate) fn axes(axis: usize) -> &'static str {
     ["yz", "xz", "xy"][axis]
 }
 

@@ -5,34 +5,34 @@ use std::io::{self, BufRead as _, BufReader, Seek as _, SeekFrom};
 use std::path::Path;
 use std::time::SystemTime;
 
-use super::beside::{LOST_LINK, LOST_LINK_HELP};
-use super::read_files::note;
+use super::companion_path::{DANGLING_LINK, DANGLING_LINK_HELP};
+use super::read_files::record_read;
 use super::{LoadControl, LoadError};
-use crate::data::attempt::Attempt;
-use crate::data::plain;
+use crate::data::load_context::LoadContext;
+use crate::data::sanitised;
 
 /// Regular file open for reading, positioned at its beginning.
 #[derive(Debug)]
-pub(crate) struct Input {
+pub(crate) struct InputFile {
     /// Buffered reader of the file's content.
     pub(crate) reader: BufReader<File>,
     /// Length of the file in bytes when it was opened.
     pub(crate) len: u64,
 }
 
-impl Input {
+impl InputFile {
     /// Opens a regular file; symbolic links are followed.
     ///
     /// # Errors
     /// `Io` when it does not exist, is not readable, or is a directory, pipe, socket or device. Pipes and devices are
     /// never opened: opening a pipe blocks, and a device may have no end.
-    pub(crate) fn open(attempt: Attempt<'_>) -> Result<Self, LoadError> {
-        let io = |error| attempt.io(error);
+    pub(crate) fn open(attempt: LoadContext<'_>) -> Result<Self, LoadError> {
+        let io = |error| attempt.io_error(error);
         let refuse = |file_type: FileType| {
             if file_type.is_dir() {
-                attempt.not_a_file("it is a directory", "name one file")
+                attempt.not_a_file_error("it is a directory", "name one file")
             } else {
-                attempt.not_a_file(
+                attempt.not_a_file_error(
                     "it is a pipe, socket or device, not a regular file",
                     "copy it to a file first",
                 )
@@ -43,7 +43,7 @@ impl Input {
             Err(error)
                 if error.kind() == io::ErrorKind::NotFound && fs::symlink_metadata(attempt.path).is_ok() =>
             {
-                return Err(attempt.not_a_file(LOST_LINK, LOST_LINK_HELP));
+                return Err(attempt.not_a_file_error(DANGLING_LINK, DANGLING_LINK_HELP));
             }
             Err(error) => return Err(io(error)),
         };
@@ -67,7 +67,7 @@ impl Input {
     /// Skips `lines` lines and returns their length in bytes, or `None` when the file ends before that.
     pub(crate) fn skip_lines(
         &mut self,
-        attempt: Attempt<'_>,
+        attempt: LoadContext<'_>,
         lines: u64,
         control: &LoadControl,
     ) -> Result<Option<u64>, LoadError> {
@@ -75,7 +75,7 @@ impl Input {
         let mut skipped = 0;
         while left > 0 {
             control.check()?;
-            let block = self.reader.fill_buf().map_err(|error| attempt.io(error))?;
+            let block = self.reader.fill_buf().map_err(|error| attempt.io_error(error))?;
             if block.is_empty() {
                 return Ok(None);
             }
@@ -96,22 +96,23 @@ impl Input {
 /// Length and modification time of a file when it was opened, to detect writes by other programs while it is read:
 /// such content would be a mixture of two versions.
 #[derive(Debug)]
-pub(crate) struct Witness {
+pub(crate) struct FileChangeGuard {
     file: File,
-    before: (u64, Option<SystemTime>),
+    initial_state: (u64, Option<SystemTime>),
 }
 
 /// Length, and modification time where the system provides it.
-fn state(file: &File) -> io::Result<(u64, Option<SystemTime>)> {
+fn file_state(file: &File) -> io::Result<(u64, Option<SystemTime>)> {
     file.metadata().map(|metadata| (metadata.len(), metadata.modified().ok()))
 }
 
-impl Witness {
+impl FileChangeGuard {
     /// Records the state of an input before anything is read from it.
-    pub(crate) fn of(attempt: Attempt<'_>, input: &Input) -> Result<Self, LoadError> {
-        note(attempt.path);
-        let seen = input.reader.get_ref().try_clone().and_then(|file| Ok((state(&file)?, file)));
-        seen.map(|(before, file)| Self { file, before }).map_err(|error| attempt.io(error))
+    pub(crate) fn new(attempt: LoadContext<'_>, input: &InputFile) -> Result<Self, LoadError> {
+        record_read(attempt.path);
+        let seen = input.reader.get_ref().try_clone().and_then(|file| Ok((file_state(&file)?, file)));
+        seen.map(|(before, file)| Self { file, initial_state: before })
+            .map_err(|error| attempt.io_error(error))
     }
 
     /// Returns the result of reading, unless the file has changed since it was opened.
@@ -119,14 +120,18 @@ impl Witness {
     /// # Errors
     /// `Io` when it has changed, even if reading failed for another reason, except for `Cancelled`, which is passed
     /// on.
-    pub(crate) fn vouch<T>(&self, attempt: Attempt<'_>, read: Result<T, LoadError>) -> Result<T, LoadError> {
+    pub(crate) fn check_unchanged<T>(
+        &self,
+        attempt: LoadContext<'_>,
+        read: Result<T, LoadError>,
+    ) -> Result<T, LoadError> {
         if matches!(read, Err(LoadError::Cancelled)) {
             return read;
         }
-        if state(&self.file).map_err(|error| attempt.io(error))? == self.before {
+        if file_state(&self.file).map_err(|error| attempt.io_error(error))? == self.initial_state {
             return read;
         }
-        Err(attempt.not_a_file(
+        Err(attempt.not_a_file_error(
             "the file has changed while it was being read",
             "open it again when whatever writes it has finished",
         ))
@@ -140,13 +145,13 @@ pub(crate) fn is_gzip(magic: &[u8]) -> bool {
 
 /// Upper bound of the inflated size of `bytes` compressed bytes: deflate expands a byte to at most 1032
 /// (<https://zlib.net/zlib_tech.html>).
-pub(in crate::data::load) fn most_inflated(bytes: u64) -> u64 {
+pub(crate) fn max_inflated_bytes(bytes: u64) -> u64 {
     bytes.saturating_mul(1032)
 }
 
 /// File name without its extension, if that is one of `endings` (lower case, longest first); the comparison ignores
 /// case.
-pub(in crate::data::load) fn bare_name(path: &Path, endings: &[&str]) -> String {
+pub(crate) fn name_without_extension(path: &Path, endings: &[&str]) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let lower = name.to_lowercase();
     let ending = endings.iter().find(|ending| lower.ends_with(**ending) && lower.len() > ending.len());
@@ -160,5 +165,5 @@ pub(crate) fn stem(path: &Path) -> String {
     let is_zipped = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gz"));
     let unzipped = path.file_stem().filter(|_| is_zipped).map_or(path, Path::new);
     let stem = unzipped.file_stem().unwrap_or(path.as_os_str());
-    plain(&stem.to_string_lossy(), 120)
+    sanitised(&stem.to_string_lossy(), 120)
 }

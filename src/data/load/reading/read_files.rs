@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 type Paths = Mutex<BTreeSet<PathBuf>>;
 
 /// Recorders that are still alive.
-static WATCHES: Mutex<Vec<Weak<Paths>>> = Mutex::new(Vec::new());
+static RECORDERS: Mutex<Vec<Weak<Paths>>> = Mutex::new(Vec::new());
 
 /// Files that any thread of this process has read voxels or metadata from since this recorder was made.
 #[derive(Debug)]
@@ -16,9 +16,9 @@ pub struct ReadFiles(Arc<Paths>);
 
 impl ReadFiles {
     /// Starts recording the files that are read.
-    pub fn watch() -> Self {
+    pub fn record() -> Self {
         let paths = Arc::<Paths>::default();
-        let mut watches = WATCHES.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut watches = RECORDERS.lock().unwrap_or_else(PoisonError::into_inner);
         watches.retain(|watch| watch.strong_count() > 0);
         watches.push(Arc::downgrade(&paths));
         Self(paths)
@@ -31,8 +31,8 @@ impl ReadFiles {
 }
 
 /// Adds a path to all active recorders.
-pub(in crate::data::load) fn note(path: &Path) {
-    for watch in WATCHES.lock().unwrap_or_else(PoisonError::into_inner).iter().filter_map(Weak::upgrade) {
+pub(crate) fn record_read(path: &Path) {
+    for watch in RECORDERS.lock().unwrap_or_else(PoisonError::into_inner).iter().filter_map(Weak::upgrade) {
         watch.lock().unwrap_or_else(PoisonError::into_inner).insert(path.to_owned());
     }
 }
@@ -42,13 +42,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn files_are_noted_while_somebody_wants_to_know() {
+    fn reads_are_recorded_while_a_recorder_exists() {
         let name = Path::new("files_are_noted_while_somebody_wants_to_know");
-        note(name);
-        let [first, second] = [ReadFiles::watch(), ReadFiles::watch()];
+        record_read(name);
+        let [first, second] = [ReadFiles::record(), ReadFiles::record()];
         let has = |watch: &ReadFiles| watch.paths().iter().any(|path| path == name);
         assert!(!has(&first));
-        note(name);
-        assert!(has(&first) && has(&second) && !has(&ReadFiles::watch()));
+        record_read(name);
+        assert!(has(&first) && has(&second) && !has(&ReadFiles::record()));
     }
 }

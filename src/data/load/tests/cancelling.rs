@@ -6,8 +6,8 @@ use std::time::Instant;
 
 use tempfile::TempDir;
 
-use super::shared::gzip;
-use crate::data::load::{Choice, LoadControl, LoadError, LoadOptions, Portion, load};
+use super::helpers::gzip;
+use crate::data::load::{LoadControl, LoadError, LoadOptions, Portion, VolumeChoice, load};
 use crate::data::{Dataset, Volume};
 
 /// Voxels along an edge of the test volume, 2 MiB in all.
@@ -25,14 +25,14 @@ fn write(folder: &TempDir, edge: usize, is_packed: bool) -> PathBuf {
 }
 
 fn read(path: &Path, portion: Portion, control: &LoadControl) -> Result<Volume, LoadError> {
-    let choice = Choice { portion: Some(portion), ..Choice::default() };
+    let choice = VolumeChoice { portion: Some(portion), ..VolumeChoice::default() };
     load(path, &LoadOptions { choice, ..LoadOptions::default() }, control)
 }
 
 /// Runs all processing of a volume before its first image.
 fn open(path: &Path, portion: Portion, control: &LoadControl) -> Result<Dataset, LoadError> {
     let volume = read(path, portion, control)?;
-    let dataset = control.during(|| Dataset::new(volume));
+    let dataset = control.run(|| Dataset::new(volume));
     if control.is_cancelled() { Err(LoadError::Cancelled) } else { Ok(dataset) }
 }
 
@@ -44,30 +44,30 @@ fn every_stage_is_cut_into_small_pieces() {
     let volume = read(&path, Portion::default(), &control).unwrap();
     let pieces = EDGE.pow(3) / PIECE;
     // Value range, statistics and fingerprint, and blocks of at most 1 MiB for reading.
-    let of_reading = control.begun();
+    let of_reading = control.pieces_begun();
     assert!(of_reading >= 3 * pieces as u64 + 2, "{of_reading}");
-    control.during(|| volume.averaged([2; 3])).unwrap();
-    let of_means = control.begun() - of_reading;
+    control.run(|| volume.to_block_averaged([2; 3])).unwrap();
+    let of_means = control.pieces_begun() - of_reading;
     assert!(of_means >= EDGE as u64, "{of_means}: a slice at a time");
-    control.during(|| Dataset::new(volume));
-    let of_bounds = control.begun() - of_means - of_reading;
+    control.run(|| Dataset::new(volume));
+    let of_bounds = control.pieces_begun() - of_means - of_reading;
     // Bricks, cells and histogram.
     assert!(of_bounds >= 4 * EDGE as u64, "{of_bounds}");
 }
 
 #[test]
-fn who_cancels_at_any_moment_waits_for_no_more_than_the_pieces_in_hand() {
+fn cancelling_waits_for_pieces_in_progress_only() {
     let folder = TempDir::new().unwrap();
     for (is_packed, portion) in [
         (false, Portion::default()),
         (true, Portion::default()),
-        (false, Portion::every(2)),
-        (true, Portion::average(2)),
+        (false, Portion::with_stride(2)),
+        (true, Portion::with_block_average(2)),
     ] {
         let path = write(&folder, EDGE, is_packed);
         let control = LoadControl::new();
         open(&path, portion, &control).unwrap();
-        let all = control.begun();
+        let all = control.pieces_begun();
         // The first moments, the last one, and nineteen in between.
         let moments =
             [1, 2, 3, all - 1].into_iter().chain((1..20).map(|at| at * all / 20).filter(|&at| at > 0));
@@ -77,7 +77,7 @@ fn who_cancels_at_any_moment_waits_for_no_more_than_the_pieces_in_hand() {
             let given_up = open(&path, portion, &control);
             assert!(matches!(given_up, Err(LoadError::Cancelled)), "{moment} of {all}");
             // Each core may have begun one piece at the same moment.
-            let late = control.begun() - moment;
+            let late = control.pieces_begun() - moment;
             assert!(late <= rayon::current_num_threads() as u64 + 1, "{late} pieces after {moment} of {all}");
         }
     }
@@ -87,7 +87,7 @@ fn who_cancels_at_any_moment_waits_for_no_more_than_the_pieces_in_hand() {
 /// `cargo nextest run --lib --run-ignored only -E 'test(how_long)' --no-capture`
 #[test]
 #[ignore = "it measures, and checks nothing"]
-fn how_long_who_cancels_waits() {
+fn measure_cancellation_delay() {
     let folder = TempDir::new().unwrap();
     for is_packed in [false, true] {
         let path = write(&folder, 512, is_packed);

@@ -2,8 +2,8 @@
 
 mod cancelling;
 mod choices;
+pub(super) mod helpers;
 mod portions;
-pub(super) mod shared;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,9 +11,9 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 use tempfile::TempDir;
 
-use self::shared::gzip;
+use self::helpers::gzip;
 use super::*;
-use crate::data::attempt::Extent;
+use crate::data::load_context::GridExtent;
 use crate::data::open;
 use crate::data::{Samples, VoxelType};
 
@@ -253,11 +253,11 @@ impl std::io::Read for CancellingReader<'_> {
 #[test]
 fn cancelling_stops_within_a_block() {
     let control = LoadControl::new();
-    let extent = Extent::sized([64 << 20, 1, 1], VoxelType::U8);
+    let extent = GridExtent::unchecked([64 << 20, 1, 1], VoxelType::U8);
     let layout =
-        super::reading::samples::Layout { extent, voxel_type: VoxelType::U8, endian: Endian::Little };
+        super::reading::samples::VoxelLayout { extent, voxel_type: VoxelType::U8, endian: Endian::Little };
     let stopped = super::reading::samples::read_binary(&mut CancellingReader(&control), &layout, &control);
-    assert!(matches!(stopped, Err(super::reading::samples::Fault::Stopped(LoadError::Cancelled))));
+    assert!(matches!(stopped, Err(super::reading::samples::ReadFault::Stopped(LoadError::Cancelled))));
     assert!(control.done_bytes.load(std::sync::atomic::Ordering::Relaxed) <= 4 << 20);
 }
 

@@ -5,13 +5,13 @@
 mod archives;
 mod compound;
 mod documents;
-mod fields;
 mod folders;
 mod hdf5;
-mod mark;
 mod medical;
 mod microscopy;
 mod ole2;
+mod signature;
+mod simulation;
 mod surfaces;
 #[cfg(test)]
 mod tests;
@@ -19,27 +19,27 @@ mod tests;
 use std::path::Path;
 
 use super::LoadError;
-use super::reading::input::Input;
-use super::reading::reader::Start;
-use crate::data::attempt::Attempt;
-pub(crate) use folders::of_folder;
-use mark::{Look, Mark};
+use super::reading::input::InputFile;
+use super::reading::reader::FileStart;
+use crate::data::load_context::LoadContext;
+pub(crate) use folders::unsupported_folder;
+use signature::{FormatSignature, InspectedFile};
 
 /// Format that is recognised but not supported.
 #[derive(Debug)]
 pub(crate) struct UnsupportedFormat {
     /// Description of a file, with its article: `a CZI file of Zeiss microscopes`.
-    what: &'static str,
+    description: &'static str,
     /// Signatures of its files; one of them must match.
-    marks: &'static [Mark],
+    signatures: &'static [FormatSignature],
     /// Extensions of its files in lower case, for those without a signature.
-    endings: &'static [&'static str],
+    extensions: &'static [&'static str],
     /// Command or advice to convert a file. IN and OUT stand for file names.
-    help: &'static str,
+    advice: &'static str,
 }
 
 /// Bytes of a file's beginning that are searched for the names in a container.
-const LOOK_BYTES: u64 = 64 << 10;
+const INSPECTED_BYTES: u64 = 64 << 10;
 
 /// All unsupported formats, those with the most specific signatures first.
 fn all() -> impl Iterator<Item = &'static UnsupportedFormat> {
@@ -48,7 +48,7 @@ fn all() -> impl Iterator<Item = &'static UnsupportedFormat> {
         compound::FORMATS,
         microscopy::FORMATS,
         medical::FORMATS,
-        fields::FORMATS,
+        simulation::FORMATS,
         surfaces::FORMATS,
         documents::FORMATS,
         archives::FORMATS,
@@ -61,31 +61,35 @@ fn all() -> impl Iterator<Item = &'static UnsupportedFormat> {
 /// Read errors are ignored here: they will be reported when the file is read.
 pub(crate) fn by_content(
     path: &Path,
-    start: &Start,
-    input: &mut Input,
+    start: &FileStart,
+    input: &mut InputFile,
 ) -> Option<&'static UnsupportedFormat> {
-    let look = Look::new(path, start, input, LOOK_BYTES);
-    all().find(|format| format.marks.iter().any(|mark| mark.is_found(&look)))
+    let look = InspectedFile::new(path, start, input, INSPECTED_BYTES);
+    all().find(|format| format.signatures.iter().any(|mark| mark.matches(&look)))
 }
 
 /// Extensions that take precedence over the content: it looks like another format, without the actual data.
-const DISGUISED: [&str; 1] = [".vsi"];
+const OVERRIDING_EXTENSIONS: [&str; 1] = [".vsi"];
 
 /// Unsupported format of a file whose content looks like a supported one.
-pub(crate) fn disguised(path: &Path) -> Option<&'static UnsupportedFormat> {
+pub(crate) fn by_overriding_extension(path: &Path) -> Option<&'static UnsupportedFormat> {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-    DISGUISED.iter().any(|ending| name.ends_with(ending)).then(|| by_name(path)).flatten()
+    OVERRIDING_EXTENSIONS.iter().any(|ending| name.ends_with(ending)).then(|| by_name(path)).flatten()
 }
 
 /// Recognises the format of a file by its name alone.
 pub(crate) fn by_name(path: &Path) -> Option<&'static UnsupportedFormat> {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-    all().find(|format| format.endings.iter().any(|ending| name.ends_with(ending)))
+    all().find(|format| format.extensions.iter().any(|ending| name.ends_with(ending)))
 }
 
 impl UnsupportedFormat {
     /// Error message of one line, with the advice.
-    pub(crate) fn refusal(&self, attempt: Attempt<'_>) -> LoadError {
-        attempt.bad_input("format", format!("it is {}, which is not read", self.what), self.help)
+    pub(crate) fn refusal(&self, attempt: LoadContext<'_>) -> LoadError {
+        attempt.bad_input_error(
+            "format",
+            format!("it is {}, which is not read", self.description),
+            self.advice,
+        )
     }
 }

@@ -4,7 +4,7 @@
 
 use std::io::{Read as _, Seek as _, SeekFrom};
 
-use super::super::reading::input::Input;
+use super::super::reading::input::InputFile;
 
 /// First bytes of a compound file.
 pub(super) const SIGNATURE: &[u8] = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1";
@@ -18,7 +18,7 @@ const DIRECTORY_BYTES: u64 = 16 << 10;
 /// Names of the first streams and storages of a compound file; empty for any other file.
 ///
 /// The directory is assumed to be contiguous, which holds at its beginning.
-pub(super) fn names(start: &[u8], input: &mut Input) -> Vec<String> {
+pub(super) fn names(start: &[u8], input: &mut InputFile) -> Vec<String> {
     let word = |at: usize| {
         let bytes = start.get(at..at + 4).and_then(|bytes| bytes.try_into().ok());
         u64::from(u32::from_le_bytes(bytes.unwrap_or_default()))

@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
-use super::super::tests::shared::{assert_refused, gzip, load_bytes, load_path};
-use super::super::{Choice, LoadControl, LoadErrorKind, LoadOptions, RawFormat, load};
+use super::super::tests::helpers::{assert_refused, gzip, load_bytes, load_path};
+use super::super::{LoadControl, LoadErrorKind, LoadOptions, RawFormat, VolumeChoice, load};
 use crate::data::VoxelType;
 
 /// Pads the beginning of a file with bytes.
@@ -35,18 +35,18 @@ fn compound(names: &[&str]) -> Vec<u8> {
 }
 
 /// Sample file of a format, and words of the error message.
-struct Example {
+struct UnsupportedSample {
     name: &'static str,
     bytes: Vec<u8>,
     words: &'static [&'static str],
 }
 
-fn example(name: &'static str, bytes: Vec<u8>, words: &'static [&'static str]) -> Example {
-    Example { name, bytes, words }
+fn example(name: &'static str, bytes: Vec<u8>, words: &'static [&'static str]) -> UnsupportedSample {
+    UnsupportedSample { name, bytes, words }
 }
 
 /// One sample of each format that is recognised by content.
-fn files() -> Vec<Example> {
+fn files() -> Vec<UnsupportedSample> {
     const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
     const ZIP: &[u8] = b"PK\x03\x04";
     let stl = [&[b'x'; 80][..], &2u32.to_le_bytes(), &[1; 100]].concat();
@@ -137,14 +137,14 @@ fn files() -> Vec<Example> {
 
 #[test]
 fn formats_are_named_by_their_bytes_with_a_command_that_helps() {
-    for Example { name, bytes, words } in files() {
+    for UnsupportedSample { name, bytes, words } in files() {
         let names = match name {
             named if named.contains('.') && !named.contains(' ') => vec![named],
             // Whatever the extension: none, an unknown one, or that of a supported format.
             _ => vec!["it", "it.xyz", "it.raw", "it.nrrd"],
         };
         for called in names {
-            let error = load_bytes(called, &bytes, Choice::default()).unwrap_err();
+            let error = load_bytes(called, &bytes, VolumeChoice::default()).unwrap_err();
             let said = error.to_string();
             assert_eq!(error.kind(), LoadErrorKind::BadInput, "{name}: {said}");
             assert!(error.is_about("format") && !said.contains("describe its voxels"), "{name}: {said}");
@@ -158,7 +158,7 @@ fn formats_are_named_by_their_bytes_with_a_command_that_helps() {
 fn inside_gzip_they_are_told_as_well() {
     let tar = with(b"slice1.dcm", 257, b"ustar\x0000");
     assert_refused(
-        load_bytes("x.tgz", &gzip(&tar), Choice::default()),
+        load_bytes("x.tgz", &gzip(&tar), VolumeChoice::default()),
         LoadErrorKind::BadInput,
         &["tar archive"],
     );
@@ -177,11 +177,11 @@ fn names_tell_where_bytes_say_nothing() {
         ("2dseq", ["Bruker", "brkraw"]),
         ("brain.vmr", ["BrainVoyager", "NIfTI"]),
     ] {
-        let refused = load_bytes(name, &[3; 700], Choice::default());
+        let refused = load_bytes(name, &[3; 700], VolumeChoice::default());
         assert_refused(refused, LoadErrorKind::BadInput, &words);
     }
     assert_refused(
-        load_bytes("notes.xyz", &[3; 700], Choice::default()),
+        load_bytes("notes.xyz", &[3; 700], VolumeChoice::default()),
         LoadErrorKind::BadInput,
         &["not one that is read"],
     );
@@ -201,9 +201,9 @@ fn folders_are_named_too() {
         for mark in marks {
             std::fs::write(path.join(mark), "{}").unwrap();
         }
-        assert_refused(load_path(&path, Choice::default()), LoadErrorKind::BadInput, &words);
+        assert_refused(load_path(&path, VolumeChoice::default()), LoadErrorKind::BadInput, &words);
         if name == "third" {
-            let inside = load_path(&path.join("zarr.json"), Choice::default());
+            let inside = load_path(&path.join("zarr.json"), VolumeChoice::default());
             assert_refused(inside, LoadErrorKind::BadInput, &["Zarr", "folder"]);
         }
     }
@@ -212,7 +212,7 @@ fn folders_are_named_too() {
 #[test]
 fn bare_voxels_that_begin_like_another_format_are_read_where_they_are_described() {
     let folder = tempfile::tempdir().unwrap();
-    for Example { name, bytes, .. } in files() {
+    for UnsupportedSample { name, bytes, .. } in files() {
         // Except those that RAW would not read as stored: gzip is inflated.
         if name == "gzip twice" || name == "scan.vsi" {
             continue;
@@ -229,7 +229,7 @@ fn bare_voxels_that_begin_like_another_format_are_read_where_they_are_described(
         assert!(volume.is_ok_and(|volume| volume.dims() == [bytes.len(), 1, 1]), "{name} by options");
         let named = folder.path().join(format!("odd_{}x1x1_uint8.raw", bytes.len()));
         std::fs::write(&named, &bytes).unwrap();
-        assert!(load_path(&named, Choice::default()).is_ok(), "{name} by its name");
+        assert!(load_path(&named, VolumeChoice::default()).is_ok(), "{name} by its name");
     }
-    assert!(super::of_folder(Path::new("nowhere")).is_none());
+    assert!(super::unsupported_folder(Path::new("nowhere")).is_none());
 }

@@ -44,7 +44,7 @@ impl AxisOrder {
     pub const ALL: [Self; 6] = [Self::Xyz, Self::Xzy, Self::Yxz, Self::Yzx, Self::Zxy, Self::Zyx];
 
     /// Returns for each axis of the file the index of the axis whose direction it takes.
-    pub fn places(self) -> [usize; 3] {
+    pub fn permutation(self) -> [usize; 3] {
         match self {
             Self::Xyz => [0, 1, 2],
             Self::Xzy => [0, 2, 1],
@@ -85,16 +85,16 @@ pub enum Orientation {
     /// There is no body, or its orientation is unknown.
     Unknown,
     /// Anatomical directions of the three axes.
-    Towards(Headings),
+    Anatomical(AnatomicalAxes),
 }
 
 /// Anatomical directions of three axes, no two of the same pair (R/L, A/P, S/I).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Headings([Heading; 3]);
+pub struct AnatomicalAxes([AnatomicalDirection; 3]);
 
 /// Anatomical direction: a signed axis of right-anterior-superior space.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Heading {
+struct AnatomicalDirection {
     /// Index of the axis: left to right, posterior to anterior, inferior to superior.
     axis: usize,
     is_backwards: bool,
@@ -103,8 +103,8 @@ struct Heading {
 /// Letters of the positive and the negative direction of each axis of right-anterior-superior space.
 const LETTERS: [[char; 2]; 3] = [['R', 'L'], ['A', 'P'], ['S', 'I']];
 
-impl Heading {
-    fn of_letter(letter: char) -> Option<Self> {
+impl AnatomicalDirection {
+    fn from_letter(letter: char) -> Option<Self> {
         let letter = letter.to_ascii_uppercase();
         let axis = LETTERS.iter().position(|pair| pair.contains(&letter))?;
         Some(Self { axis, is_backwards: letter == LETTERS[axis][1] })
@@ -120,27 +120,28 @@ impl Heading {
     }
 }
 
-impl Headings {
+impl AnatomicalAxes {
     /// Parses three letters of any case, one of each pair.
-    fn of_letters(text: &str) -> Option<Self> {
+    fn from_letters(text: &str) -> Option<Self> {
         // A fourth letter makes the conversion fail; no more need be looked at.
-        let headings: Option<Vec<_>> = text.chars().take(4).map(Heading::of_letter).collect();
-        let headings: [Heading; 3] = headings?.try_into().ok()?;
+        let headings: Option<Vec<_>> = text.chars().take(4).map(AnatomicalDirection::from_letter).collect();
+        let headings: [AnatomicalDirection; 3] = headings?.try_into().ok()?;
         let has_all = (0..3).all(|axis| headings.iter().any(|heading| heading.axis == axis));
         has_all.then_some(Self(headings))
     }
 
     /// Returns the unit vectors of the three axes, in right-anterior-superior space.
     pub fn directions(self) -> [DVec3; 3] {
-        self.0.map(Heading::direction)
+        self.0.map(AnatomicalDirection::direction)
     }
 
     /// Iterates over all 48 orientations of three axes, those in the order x, y, z first.
     pub fn all() -> impl Iterator<Item = Self> {
         AxisOrder::ALL.into_iter().flat_map(|order| {
             (0..8).map(move |signs: usize| {
-                let heading = |place: usize| Heading { axis: place, is_backwards: signs >> place & 1 == 1 };
-                Self(order.places().map(heading))
+                let heading =
+                    |place: usize| AnatomicalDirection { axis: place, is_backwards: signs >> place & 1 == 1 };
+                Self(order.permutation().map(heading))
             })
         })
     }
@@ -148,13 +149,13 @@ impl Headings {
     /// Returns the anatomical directions closest to three axes, no pair used twice: the axis best aligned is assigned
     /// first.
     pub fn nearest(axes: [DVec3; 3]) -> Self {
-        let mut headings = [0, 1, 2].map(|axis| Heading { axis, is_backwards: false });
+        let mut headings = [0, 1, 2].map(|axis| AnatomicalDirection { axis, is_backwards: false });
         let (mut left, mut sides) = (vec![0, 1, 2], vec![0, 1, 2]);
         while !left.is_empty() {
             let pairs = left.iter().flat_map(|&axis| sides.iter().map(move |&side| (axis, side)));
             let share = |(axis, side): &(usize, usize)| axes[*axis].normalize_or_zero()[*side].abs();
             let Some((axis, side)) = pairs.max_by(|a, b| share(a).total_cmp(&share(b))) else { break };
-            headings[axis] = Heading { axis: side, is_backwards: axes[axis][side] < 0.0 };
+            headings[axis] = AnatomicalDirection { axis: side, is_backwards: axes[axis][side] < 0.0 };
             left.retain(|&other| other != axis);
             sides.retain(|&other| other != side);
         }
@@ -164,12 +165,12 @@ impl Headings {
 
 impl Orientation {
     /// Iterates over all known orientations, for lists.
-    pub fn all_towards() -> impl Iterator<Item = Self> {
-        Headings::all().map(Self::Towards)
+    pub fn all_anatomical() -> impl Iterator<Item = Self> {
+        AnatomicalAxes::all().map(Self::Anatomical)
     }
 }
 
-impl fmt::Display for Headings {
+impl fmt::Display for AnatomicalAxes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.iter().try_for_each(|heading| write!(f, "{}", heading.letter()))
     }
@@ -179,17 +180,17 @@ impl fmt::Display for Orientation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Unknown => f.write_str("unknown"),
-            Self::Towards(headings) => headings.fmt(f),
+            Self::Anatomical(headings) => headings.fmt(f),
         }
     }
 }
 
-impl FromStr for Headings {
+impl FromStr for AnatomicalAxes {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        Self::of_letters(text).ok_or_else(|| {
-            let shown = crate::data::plain(text, 40);
+        Self::from_letters(text).ok_or_else(|| {
+            let shown = crate::data::sanitised(text, 40);
             format!("expected one letter of each of R/L, A/P and S/I, as in RAS or LPS; found {shown:?}")
         })
     }
@@ -202,8 +203,8 @@ impl FromStr for Orientation {
         if text.trim().eq_ignore_ascii_case("unknown") {
             return Ok(Self::Unknown);
         }
-        Headings::of_letters(text.trim()).map(Self::Towards).ok_or_else(|| {
-            let shown = crate::data::plain(text, 40);
+        AnatomicalAxes::from_letters(text.trim()).map(Self::Anatomical).ok_or_else(|| {
+            let shown = crate::data::sanitised(text, 40);
             format!(
                 "expected one letter of each of R/L, A/P and S/I, as in RAS or LPS, or unknown; found {shown:?}"
             )

@@ -3,18 +3,18 @@
 
 mod apply;
 mod axes;
-mod scaled;
+mod rescale;
 mod spacing;
 #[cfg(test)]
 mod tests;
 
-pub(in crate::data::volume) use apply::Corrected;
-pub use axes::{AxisOrder, Flips, Headings, Orientation};
+pub(crate) use apply::AppliedCorrections;
+pub use axes::{AnatomicalAxes, AxisOrder, Flips, Orientation};
 pub use spacing::SpacingUnit;
 
 use serde::{Deserialize, Serialize};
 
-use crate::data::attempt::{is_usable_spacing, unlike_spacings};
+use crate::data::load_context::{is_usable_spacing, spacing_ratio_error};
 
 /// Maximum slope of values; larger ones, or smaller ones than its inverse, would leave the range of 32-bit floats.
 const MAX_SLOPE: f64 = 1e12;
@@ -28,7 +28,7 @@ const MAX_VALUE: f64 = 1e30;
 pub struct Corrections {
     /// Voxel spacings along the three axes of the file, in [`Self::unit`]; `None` for those of the file. On the
     /// command line also as text: `0.5,0.5,2`, or one number for all three.
-    #[serde(deserialize_with = "spacing::read")]
+    #[serde(deserialize_with = "spacing::deserialize_spacing")]
     pub spacing: Option<[f64; 3]>,
     /// Unit of spacings, also of the file's own ones. `None` for the unit in the file, or for millimetres if spacings
     /// are given here.
@@ -45,7 +45,7 @@ pub struct Corrections {
     pub value_scale: ValueScale,
 }
 
-/// Padding value of missing voxels; in JSON null, `"none"` or a number.
+/// Padding value of missing voxels; in JSON null, `"new"` or a number.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(from = "WrittenPadding", into = "WrittenPadding")]
 pub enum PaddingValue {
@@ -63,14 +63,14 @@ pub enum PaddingValue {
 #[serde(untagged, expecting = "expected a number, \"none\", or null for what the file declares")]
 enum WrittenPadding {
     Value(f64),
-    Word(NoPadding),
+    Word(NoPaddingKeyword),
     InFile,
 }
 
 /// Keyword for no padding at all.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-enum NoPadding {
+enum NoPaddingKeyword {
     None,
 }
 
@@ -78,7 +78,7 @@ impl From<WrittenPadding> for PaddingValue {
     fn from(written: WrittenPadding) -> Self {
         match written {
             WrittenPadding::Value(value) => Self::Value(value),
-            WrittenPadding::Word(NoPadding::None) => Self::Nothing,
+            WrittenPadding::Word(NoPaddingKeyword::None) => Self::Nothing,
             WrittenPadding::InFile => Self::InFile,
         }
     }
@@ -88,7 +88,7 @@ impl From<PaddingValue> for WrittenPadding {
     fn from(padding: PaddingValue) -> Self {
         match padding {
             PaddingValue::Value(value) => Self::Value(value),
-            PaddingValue::Nothing => Self::Word(NoPadding::None),
+            PaddingValue::Nothing => Self::Word(NoPaddingKeyword::None),
             PaddingValue::InFile => Self::InFile,
         }
     }
@@ -117,18 +117,18 @@ impl ValueScale {
     }
 
     /// Converts a number of the file to a value.
-    pub fn value(self, number: f64) -> f64 {
+    pub fn value_from_number(self, number: f64) -> f64 {
         self.slope * number + self.intercept
     }
 
     /// Converts a value back to the number in the file.
-    pub fn number(self, value: f64) -> f64 {
+    pub fn number_from_value(self, value: f64) -> f64 {
         (value - self.intercept) / self.slope
     }
 
     /// Converts a value of this scale to the value of the same number in another scale.
-    pub fn in_scale(self, other: Self, value: f64) -> f64 {
-        if self == other { value } else { other.value(self.number(value)) }
+    pub fn convert(self, other: Self, value: f64) -> f64 {
+        if self == other { value } else { other.value_from_number(self.number_from_value(value)) }
     }
 }
 
@@ -144,7 +144,7 @@ impl Corrections {
     }
 
     /// Returns true if other corrections change values in the same way.
-    fn has_values_of(&self, other: &Self) -> bool {
+    fn corrects_values_like(&self, other: &Self) -> bool {
         self.padding_value == other.padding_value && self.value_scale == other.value_scale
     }
 
@@ -155,7 +155,7 @@ impl Corrections {
         let is_usable = |spacing: &[f64; 3]| {
             let spacing_mm = spacing.map(|length| length * unit_mm);
             spacing_mm.iter().all(|&length| is_usable_spacing(length))
-                && unlike_spacings(spacing_mm).is_none()
+                && spacing_ratio_error(spacing_mm).is_none()
         };
         *spacing = spacing.filter(is_usable);
         if let PaddingValue::Value(value) = padding_value

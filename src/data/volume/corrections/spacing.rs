@@ -39,7 +39,7 @@ impl SpacingUnit {
     }
 
     /// Returns the unit in which a length is at least 1: millimetres if possible, otherwise a shorter one.
-    pub fn showing(length_mm: f64) -> Self {
+    pub fn suiting_length(length_mm: f64) -> Self {
         match length_mm {
             length if length >= 1.0 => Self::Mm,
             length if length >= 1e-3 => Self::Um,
@@ -48,14 +48,14 @@ impl SpacingUnit {
     }
 
     /// Finds the unit of exactly this length in mm.
-    fn of_mm(mm: f64) -> Option<Self> {
+    fn from_mm(mm: f64) -> Option<Self> {
         Self::ALL.into_iter().find(|unit| *unit != Self::Voxels && unit.mm().to_bits() == mm.to_bits())
     }
 
     /// Returns the unit in which spacings are shown: down to a hundredth of a millimetre, decimals of millimetres
     /// suffice.
-    pub fn of_spacing(spacing_mm: [f64; 3]) -> Self {
-        Self::showing(100.0 * spacing_mm.into_iter().fold(0.0, f64::max))
+    pub fn suiting_spacing(spacing_mm: [f64; 3]) -> Self {
+        Self::suiting_length(100.0 * spacing_mm.into_iter().fold(0.0, f64::max))
     }
 
     /// Returns the symbol written after a number.
@@ -73,13 +73,13 @@ impl SpacingUnit {
 
 /// Maximum number of units for the object's size at which the file's unit is used; larger numbers have too many
 /// digits.
-const MOST_UNITS: f64 = 1e4;
+const MAX_UNITS_SHOWN: f64 = 1e4;
 
 impl Volume {
     /// Sets the unit in which the file states lengths, given in mm; a length that is no known unit is ignored.
     #[must_use]
-    pub fn said_in_units_of(self, mm: f64) -> Self {
-        Self { length_unit: SpacingUnit::of_mm(mm).unwrap_or(self.length_unit), ..self }
+    pub fn with_length_unit(self, mm: f64) -> Self {
+        Self { length_unit: SpacingUnit::from_mm(mm).unwrap_or(self.length_unit), ..self }
     }
 
     /// Returns the unit in which lengths of the object's size are shown: that of the file, if it suits them.
@@ -87,8 +87,8 @@ impl Volume {
         let length_mm = self.scene().mm_per_unit;
         match self.length_unit {
             SpacingUnit::Voxels => SpacingUnit::Voxels,
-            unit if (1.0..=MOST_UNITS).contains(&(length_mm / unit.mm())) => unit,
-            _ => SpacingUnit::showing(length_mm),
+            unit if (1.0..=MAX_UNITS_SHOWN).contains(&(length_mm / unit.mm())) => unit,
+            _ => SpacingUnit::suiting_length(length_mm),
         }
     }
 }
@@ -96,26 +96,28 @@ impl Volume {
 /// Serialised form: three spacings, one for all axes, or a text of either.
 #[derive(Deserialize)]
 #[serde(untagged, expecting = "expected three numbers, as in 0.5,0.5,2, or one for all axes")]
-enum Written {
+enum WrittenSpacing {
     Three([f64; 3]),
     One(f64),
     Text(String),
 }
 
 /// Deserialises spacings; null for those of the file.
-pub(super) fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<[f64; 3]>, D::Error> {
-    let Some(written) = Option::<Written>::deserialize(deserializer)? else { return Ok(None) };
+pub(super) fn deserialize_spacing<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<[f64; 3]>, D::Error> {
+    let Some(written) = Option::<WrittenSpacing>::deserialize(deserializer)? else { return Ok(None) };
     let parsed = match written {
-        Written::Three(three) => Some(three),
-        Written::One(one) => Some([one; 3]),
-        Written::Text(text) => numbers(&text),
+        WrittenSpacing::Three(three) => Some(three),
+        WrittenSpacing::One(one) => Some([one; 3]),
+        WrittenSpacing::Text(text) => parse_spacing(&text),
     };
     let refused = || serde::de::Error::custom("expected three numbers, as in 0.5,0.5,2, or one for all axes");
     parsed.ok_or_else(refused).map(Some)
 }
 
 /// Parses `0.5,0.5,2` or `0.5x0.5x2`.
-fn numbers(text: &str) -> Option<[f64; 3]> {
+fn parse_spacing(text: &str) -> Option<[f64; 3]> {
     let parts: Vec<f64> =
         text.split(['x', 'X', '×', ',']).map(|part| part.trim().parse().ok()).collect::<Option<_>>()?;
     parts.try_into().ok()
@@ -136,9 +138,9 @@ mod tests {
             ([0.0005, 0.0005, 0.002], SpacingUnit::Um),
             ([3.25e-6; 3], SpacingUnit::Nm),
         ] {
-            assert_eq!(SpacingUnit::of_spacing(spacing), unit, "{spacing:?}");
+            assert_eq!(SpacingUnit::suiting_spacing(spacing), unit, "{spacing:?}");
         }
-        assert_eq!(SpacingUnit::showing(0.5), SpacingUnit::Um);
+        assert_eq!(SpacingUnit::suiting_length(0.5), SpacingUnit::Um);
     }
 
     #[test]
@@ -146,7 +148,7 @@ mod tests {
         let of = |spacing_mm: f64, unit_mm: f64| {
             let samples = Samples::U8((0..64).collect());
             let volume = Volume::with_spacing("t", [4; 3], DVec3::splat(spacing_mm), samples).unwrap();
-            volume.said_in_units_of(unit_mm).length_unit()
+            volume.with_length_unit(unit_mm).length_unit()
         };
         assert_eq!(
             [of(20.0, 10.0), of(20.0, 1e3), of(2e3, 1e3)],

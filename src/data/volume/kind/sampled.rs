@@ -6,10 +6,10 @@ use rayon::prelude::*;
 use crate::data::Volume;
 
 /// Approximate maximum number of sampled voxels; larger volumes are subsampled along each axis.
-const LOOKED_AT: f64 = (1u64 << 21) as f64;
+const MAX_SAMPLES: f64 = (1u64 << 21) as f64;
 
 /// Maximum number of sampled voxels along an edge of a face.
-const FACE_EDGE: usize = 128;
+const MAX_FACE_SAMPLES: usize = 128;
 
 /// Criteria of a spike: minimum share of the voxels, and minimum gap to the other values as a share of their range.
 /// Edges of objects fill the gap between a measured background and the object. Both match the criteria of padding in
@@ -19,10 +19,10 @@ const SPIKE_GAP: f64 = 0.05;
 
 /// Share of the values at an end that count as outliers when the range of the others is measured: two thousand of the
 /// two million sampled voxels.
-const OUTERMOST: f64 = 0.001;
+const OUTLIER_SHARE: f64 = 0.001;
 
 /// Sorted values of sampled voxels.
-pub(super) struct Sampled<'a> {
+pub(super) struct SampledValues<'a> {
     volume: &'a Volume,
     /// Values that are finite and not padding, ascending.
     pub(super) values: Vec<f64>,
@@ -33,10 +33,10 @@ pub(super) struct Sampled<'a> {
     spikes: [Option<f64>; 2],
 }
 
-impl<'a> Sampled<'a> {
-    pub(super) fn of(volume: &'a Volume) -> Self {
+impl<'a> SampledValues<'a> {
+    pub(super) fn from_volume(volume: &'a Volume) -> Self {
         let [nx, ny, nz] = volume.dims();
-        let step = (volume.voxel_count() as f64 / LOOKED_AT).cbrt().ceil().max(1.0) as usize;
+        let step = (volume.voxel_count() as f64 / MAX_SAMPLES).cbrt().ceil().max(1.0) as usize;
         let padding = declared_padding(volume);
         let samples = volume.samples();
         let mut values: Vec<f64> = (0..nz)
@@ -48,7 +48,7 @@ impl<'a> Sampled<'a> {
                 let voxels = rows.flat_map(move |row| (row..row + nx).step_by(step));
                 voxels.map(|voxel| samples.value(voxel))
             })
-            .filter(|value| holds_something(*value, padding))
+            .filter(|value| is_present(*value, padding))
             .collect();
         values.par_sort_unstable_by(f64::total_cmp);
         Self { volume, values, padding, step, spikes: [None; 2] }
@@ -60,13 +60,13 @@ impl<'a> Sampled<'a> {
     }
 
     /// Returns the share of the voxels with values from `low` to below `high`.
-    pub(super) fn share(&self, low: f64, high: f64) -> f64 {
+    pub(super) fn share_in_range(&self, low: f64, high: f64) -> f64 {
         let below = |value: f64| self.values.partition_point(|&other| other < value);
         (below(high) - below(low)) as f64 / self.values.len().max(1) as f64
     }
 
     /// Returns the share of the voxels with exactly this value.
-    pub(super) fn share_of(&self, value: f64) -> f64 {
+    pub(super) fn share_equal_to(&self, value: f64) -> f64 {
         let count = self.values.iter().filter(|&&other| other == value).count();
         count as f64 / self.values.len().max(1) as f64
     }
@@ -92,7 +92,7 @@ impl<'a> Sampled<'a> {
     /// half of it.
     pub(super) fn coherence_beyond(&self, value: f64) -> f64 {
         let is_beyond = |one: f64, value: f64| if value < 0.0 { one <= value } else { one >= value };
-        let [strong, alike] = self.pairs(
+        let [strong, alike] = self.fold_neighbour_pairs(
             |[strong, alike]: &mut [f64; 2], one, other| {
                 for (one, other) in [(one, other), (other, one)] {
                     if is_beyond(one, value) && Some(one) != self.spikes[0] && Some(one) != self.spikes[1] {
@@ -133,12 +133,12 @@ impl<'a> Sampled<'a> {
         // Criteria refer to the remaining values.
         let rest = (all - count) as f64;
         let next = at(&self.values, count);
-        let other_end = at(&self.values, all - 1 - (OUTERMOST * rest) as usize);
+        let other_end = at(&self.values, all - 1 - (OUTLIER_SHARE * rest) as usize);
         ((next - first).abs() >= SPIKE_GAP * (other_end - next).abs()).then_some(first)
     }
 
     /// Returns the distinct values in ascending order, if there are at most `most`.
-    pub(super) fn distinct(&self, most: usize) -> Option<Vec<f64>> {
+    pub(super) fn distinct_values(&self, most: usize) -> Option<Vec<f64>> {
         let mut distinct: Vec<f64> = Vec::new();
         for &value in &self.values {
             // 0 and −0 compare as equal.
@@ -154,7 +154,7 @@ impl<'a> Sampled<'a> {
 
     /// Accumulates `count` over all pairs of neighbours along an axis, at sampled voxels, that are finite and not
     /// padding.
-    pub(super) fn pairs<T: Send + Default>(
+    pub(super) fn fold_neighbour_pairs<T: Send + Default>(
         &self,
         count: impl Fn(&mut T, f64, f64) + Sync,
         sum: impl Fn(T, T) -> T + Sync + Send,
@@ -170,12 +170,12 @@ impl<'a> Sampled<'a> {
                     for x in (0..nx).step_by(self.step) {
                         let at = (z * ny + y) * nx + x;
                         let here = samples.value(at);
-                        if !holds_something(here, self.padding) {
+                        if !is_present(here, self.padding) {
                             continue;
                         }
                         let mut pair = |is_inside: bool, step: usize| {
                             let other = is_inside.then(|| samples.value(at + step));
-                            if let Some(other) = other.filter(|&other| holds_something(other, self.padding)) {
+                            if let Some(other) = other.filter(|&other| is_present(other, self.padding)) {
                                 count(&mut total, here, other);
                             }
                         };
@@ -196,7 +196,7 @@ impl<'a> Sampled<'a> {
         std::array::from_fn(|face| {
             let (axis, is_last) = (face / 2, face % 2 == 1);
             let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-            let step = |axis: usize| dims[axis].div_ceil(FACE_EDGE);
+            let step = |axis: usize| dims[axis].div_ceil(MAX_FACE_SAMPLES);
             let mut values: Vec<f64> = (0..dims[u])
                 .step_by(step(u))
                 .flat_map(|i| (0..dims[v]).step_by(step(v)).map(move |j| (i, j)))
@@ -205,7 +205,7 @@ impl<'a> Sampled<'a> {
                     (at[axis], at[u], at[v]) = (if is_last { dims[axis] - 1 } else { 0 }, i, j);
                     self.volume.value(at[0], at[1], at[2])
                 })
-                .filter(|value| holds_something(*value, self.padding))
+                .filter(|value| is_present(*value, self.padding))
                 .collect();
             values.sort_unstable_by(f64::total_cmp);
             values
@@ -214,13 +214,14 @@ impl<'a> Sampled<'a> {
 
     /// Returns the threshold that best splits the values into two classes (Otsu 1979), in bins between the outermost
     /// thousandths.
-    pub(super) fn split(&self) -> f64 {
+    pub(super) fn otsu_threshold(&self) -> f64 {
         // The number of values of 8-bit data.
         const BINS: usize = 256;
-        let (low, high) = (self.quantile(OUTERMOST), self.quantile(1.0 - OUTERMOST));
+        let (low, high) = (self.quantile(OUTLIER_SHARE), self.quantile(1.0 - OUTLIER_SHARE));
         let value = |bin: usize| low + (high - low) * bin as f64 / BINS as f64;
         let total = self.values.len() as f64;
-        let counts: Vec<f64> = (0..BINS).map(|bin| total * self.share(value(bin), value(bin + 1))).collect();
+        let counts: Vec<f64> =
+            (0..BINS).map(|bin| total * self.share_in_range(value(bin), value(bin + 1))).collect();
         let all: f64 = counts.iter().sum();
         let sum: f64 = counts.iter().enumerate().map(|(bin, count)| bin as f64 * count).sum();
         let (mut below, mut sum_below, mut best, mut best_bin) = (0.0, 0.0, -1.0, 0);
@@ -248,16 +249,16 @@ pub(super) fn quantile(values: &[f64], share: f64) -> f64 {
 
 /// Returns the padding value that the file declares, even if the volume has no other values and so shows it.
 fn declared_padding(volume: &Volume) -> Option<f64> {
-    volume.padding_value().or(volume.hints().padding)
+    volume.padding_value().or(volume.metadata().padding)
 }
 
 /// Returns true if a value is finite and not padding.
-fn holds_something(value: f64, padding: Option<f64>) -> bool {
+fn is_present(value: f64, padding: Option<f64>) -> bool {
     value.is_finite() && Some(value) != padding
 }
 
 /// Returns the distinct values of all voxels in ascending order, without padding, if there are at most `most`.
-pub(super) fn distinct_of_all(volume: &Volume, most: usize) -> Option<Vec<f64>> {
+pub(super) fn distinct_values_of_all_voxels(volume: &Volume, most: usize) -> Option<Vec<f64>> {
     let (samples, padding) = (volume.samples(), declared_padding(volume));
     let mut distinct: Vec<f64> = Vec::new();
     let mut last = f64::NAN;
@@ -265,7 +266,7 @@ pub(super) fn distinct_of_all(volume: &Volume, most: usize) -> Option<Vec<f64>> 
         // Adding 0 turns −0 into 0.
         let value = samples.value(voxel) + 0.0;
         // A shortcut: neighbours are mostly equal.
-        if value == last || !holds_something(value, padding) {
+        if value == last || !is_present(value, padding) {
             continue;
         }
         last = value;

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{DataKind, KindName};
 use crate::data::synthetic::builtin;
-use crate::data::{Hints, Meaning, Modality, Samples, Volume};
+use crate::data::{Modality, Samples, ValueMeaning, ValueMetadata, Volume};
 
 const N: usize = 40;
 
@@ -184,7 +184,7 @@ fn scalars() -> Vec<Vec<f64>> {
 fn assert_all(fields: &[Vec<f64>], name: KindName) {
     for (index, field) in fields.iter().enumerate() {
         let volume = volume_of(Samples::F64(field.clone()));
-        assert_eq!(volume.kind().kind.name(), name, "{index}: {}", volume.kind().why);
+        assert_eq!(volume.kind().kind.name(), name, "{index}: {}", volume.kind().reason);
     }
 }
 
@@ -249,7 +249,7 @@ fn kinds_do_not_depend_on_the_number_type() {
 }
 
 #[test]
-fn single_values_and_missing_ones_change_no_kind() {
+fn outliers_and_missing_voxels_change_no_kind() {
     for field in all_fields() {
         let found = kind(&field);
         // A mask with one more value is no mask.
@@ -269,19 +269,19 @@ fn single_values_and_missing_ones_change_no_kind() {
 }
 
 #[test]
-fn files_know_better() {
-    let with = |field: &[f64], say: &dyn Fn(&mut Hints)| {
-        let mut hints = Hints::default();
+fn file_metadata_overrides_detection() {
+    let with = |field: &[f64], say: &dyn Fn(&mut ValueMetadata)| {
+        let mut hints = ValueMetadata::default();
         say(&mut hints);
-        volume_of(Samples::F64(field.to_vec())).with_hints(hints).kind().kind
+        volume_of(Samples::F64(field.to_vec())).with_metadata(hints).kind().kind
     };
     let ball = &scalars()[0];
-    let labels = with(ball, &|hints| hints.meaning = Meaning::Labels);
+    let labels = with(ball, &|hints| hints.meaning = ValueMeaning::Labels);
     assert!(matches!(labels, DataKind::LabelMap { .. }));
     let hounsfield_units = with(ball, &|hints| hints.set_unit("HU"));
     assert_eq!(hounsfield_units, DataKind::HounsfieldCt { water: 0.0 });
     let lobes = &signed_fields()[1];
-    assert_eq!(with(lobes, &|hints| hints.meaning = Meaning::PositiveDensity), DataKind::Scalar);
+    assert_eq!(with(lobes, &|hints| hints.meaning = ValueMeaning::PositiveDensity), DataKind::Scalar);
     // Twelve bits without a sign: CT only if the file says so.
     let head = &scalars()[11];
     let of_ct = with(head, &|hints| hints.modality = Modality::Ct);
@@ -316,12 +316,12 @@ fn built_in_volumes_are_what_they_are() {
         ("marschner-lobb", 48, KindName::Scalar),
     ] {
         let volume = builtin(name, Some(n)).unwrap();
-        assert_eq!(volume.kind().kind.name(), kind, "{name} {n}: {}", volume.kind().why);
+        assert_eq!(volume.kind().kind.name(), kind, "{name} {n}: {}", volume.kind().reason);
     }
 }
 
 #[test]
-fn declared_padding_is_no_value_no_neighbour_and_no_face() {
+fn declared_padding_is_ignored() {
     let with_padding = |values: Vec<f64>, padding: f64| {
         volume_of(Samples::F64(values)).with_padding(padding).unwrap().kind().kind
     };

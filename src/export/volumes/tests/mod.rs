@@ -10,27 +10,31 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use super::*;
 use crate::data::load::{LoadControl, LoadOptions, load};
-use crate::data::{Hints, Meaning, Modality, Samples};
+use crate::data::{Modality, Samples, ValueMeaning, ValueMetadata};
 
 /// Dimensions of the test volumes: all different, so that no axis can be mistaken for another.
 const DIMS: [usize; 3] = [5, 4, 3];
 
 /// Exported file in a temporary folder.
-struct Written {
+struct ExportedFile {
     _folder: tempfile::TempDir,
     path: PathBuf,
 }
 
 /// Writes a volume in a format to a temporary folder.
-fn written(format: VolumeFormat, volume: &Outgoing<'_>, is_compressed: bool) -> Written {
+fn export_to_temporary_file(
+    format: VolumeFormat,
+    volume: &ExportVolume<'_>,
+    is_compressed: bool,
+) -> ExportedFile {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("scan").with_extension(format.endings()[0]);
+    let path = folder.path().join("scan").with_extension(format.extensions()[0]);
     write_volume(&path, format, volume, is_compressed).unwrap();
-    Written { _folder: folder, path }
+    ExportedFile { _folder: folder, path }
 }
 
 /// Reads a file that was exported.
-fn read(written: &Written) -> Volume {
+fn read_back(written: &ExportedFile) -> Volume {
     load(&written.path, &LoadOptions::default(), &LoadControl::new()).unwrap()
 }
 
@@ -68,7 +72,7 @@ fn samples(voxel_type: VoxelType) -> Samples {
 }
 
 /// Returns the affine of an oblique, mirrored grid far from the origin.
-fn askew() -> DAffine3 {
+fn oblique_affine() -> DAffine3 {
     let turn = DMat3::from_axis_angle(DVec3::new(0.3, -0.9, 0.4).normalize(), 0.7);
     let matrix3 = turn * DMat3::from_diagonal(DVec3::new(0.488_281_25, 0.7, -2.5));
     DAffine3 { matrix3, translation: DVec3::new(-123.456, 78.9, 1012.3) }
@@ -81,7 +85,7 @@ fn volume(samples: Samples, world_from_index: DAffine3) -> Volume {
 /// Returns the bytes of all voxels in order, little-endian.
 fn bytes(volume: &Volume) -> Vec<u8> {
     let mut bytes = Vec::new();
-    Outgoing::of(volume).write_voxels(&mut bytes).unwrap();
+    ExportVolume::new(volume).write_voxels(&mut bytes).unwrap();
     bytes
 }
 

@@ -10,14 +10,16 @@ mod bounces;
 mod light;
 mod sky;
 
-pub use self::bounces::{Bounce, Bounces, First};
-pub use self::light::{Average, FloorShadow, Light, Raycast, Shading};
-pub use self::sky::{Blocks, FloorMap, MAX_SKY_RAYS, Sky, SkyRays, Sweep};
+pub use self::bounces::{BounceUniform, ScatteredLightUniform, SingleScatteringUniform};
+pub use self::light::{AverageUniform, FloorShadowUniform, LightUniform, RaycastUniform, ShadingUniform};
+pub use self::sky::{
+    BlocksUniform, FloorSkyMapUniform, MAX_BATCH_DIRECTIONS, SkyUniform, SweepRaysUniform, SweepUniform,
+};
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DAffine3, DVec2, DVec3};
 
-use crate::math::{Region, SceneSpace};
+use crate::math::{ClipRegion, SceneSpace};
 use crate::plan::SheetFrame as Frame;
 
 fn vec3(v: DVec3) -> [f32; 3] {
@@ -42,7 +44,7 @@ pub(crate) fn rows(map: &DAffine3) -> [[f32; 4]; 3] {
 /// Rays and slabs of a stack of sheets, as declared in `sheets/sheet_frame.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct SheetFrame {
+pub struct SheetFrameUniform {
     pub origin: [f32; 3],
     pub first_depth: f32,
     pub origin_di: [f32; 3],
@@ -61,7 +63,7 @@ pub struct SheetFrame {
     pub size: [u32; 2],
 }
 
-impl SheetFrame {
+impl SheetFrameUniform {
     pub fn new(frame: &Frame) -> Self {
         Self {
             origin: vec3(frame.origin.base),
@@ -87,7 +89,7 @@ impl SheetFrame {
 /// Crop box and clip plane, as declared in `density/cut.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Cut {
+pub struct CutUniform {
     pub low: [f32; 3],
     pub pad0: f32,
     pub high: [f32; 3],
@@ -95,15 +97,18 @@ pub struct Cut {
     pub plane: [f32; 4],
 }
 
-impl Cut {
+impl CutUniform {
     /// Distance, in voxels, of the faces and the plane where nothing is cut: far outside every volume, and far from
     /// overflow.
-    const AWAY: f64 = 1e9;
+    const UNBOUNDED_VOXELS: f64 = 1e9;
 
-    pub fn new(region: &Region) -> Self {
-        let near = |v: DVec3| vec3(v.clamp(DVec3::splat(-Self::AWAY), DVec3::splat(Self::AWAY)));
-        let plane =
-            region.plane.map_or(DVec3::ZERO.extend(Self::AWAY), |half| half.normal.extend(half.offset));
+    pub fn new(region: &ClipRegion) -> Self {
+        let near = |v: DVec3| {
+            vec3(v.clamp(DVec3::splat(-Self::UNBOUNDED_VOXELS), DVec3::splat(Self::UNBOUNDED_VOXELS)))
+        };
+        let plane = region
+            .plane
+            .map_or(DVec3::ZERO.extend(Self::UNBOUNDED_VOXELS), |half| half.normal.extend(half.offset));
         Self {
             low: near(region.low),
             pad0: 0.0,
@@ -117,7 +122,7 @@ impl Cut {
 /// Voxel grid and texture scales, as declared in `density/volume.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Grid {
+pub struct GridUniform {
     pub dims: [f32; 3],
     pub dilation: i32,
     pub density_scale: [f32; 3],
@@ -131,7 +136,7 @@ pub struct Grid {
 /// Parameters of filling a pyramid level, as declared in `volume/levels.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Resample {
+pub struct PyramidLevelUniform {
     pub bricks: u32,
     pub spacing: f32,
     pub pad0: u32,
@@ -141,12 +146,12 @@ pub struct Resample {
 /// Parameters of a slab of the scattering engine, as declared in `scatter/slab.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Scatter {
-    pub frame: SheetFrame,
+pub struct ScatterSlabUniform {
+    pub frame: SheetFrameUniform,
     pub sheets_from_index_x: [f32; 4],
     pub sheets_from_index_y: [f32; 4],
     pub sheets_from_index_z: [f32; 4],
-    pub half: [f32; 3],
+    pub half_extents: [f32; 3],
     pub stretch: f32,
     pub dims: [f32; 3],
     pub k: u32,
@@ -172,7 +177,7 @@ pub struct Scatter {
 /// Phase of compositing footprints, as declared in `scatter/footprints.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Phase {
+pub struct FootprintPhaseUniform {
     pub u: u32,
     pub v: u32,
     pub brick_u: u32,
@@ -186,26 +191,26 @@ pub struct Phase {
 /// Parameters of marching light through slabs, as declared in `sheets/march.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct March {
-    pub frame: SheetFrame,
+pub struct MarchUniform {
+    pub frame: SheetFrameUniform,
     pub begin: u32,
     pub end: u32,
     pub layers: u32,
     pub tiles: u32,
     pub extinction_scale: f32,
-    pub hood_inner: f32,
-    pub hood_outer: f32,
+    pub cone_cos_inner: f32,
+    pub cone_cos_outer: f32,
     pub reach: i32,
-    pub hood_axis: [f32; 3],
-    pub dark: f32,
-    pub shading_cut: Cut,
+    pub cone_axis: [f32; 3],
+    pub min_transmittance: f32,
+    pub shading_cut: CutUniform,
 }
 
 /// Parameters of the back-projection, as declared in `light/backproject.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Backprojection {
-    pub frame: SheetFrame,
+pub struct BackprojectionUniform {
+    pub frame: SheetFrameUniform,
     pub light_from_index_x: [f32; 4],
     pub light_from_index_y: [f32; 4],
     pub light_from_index_z: [f32; 4],
@@ -226,7 +231,7 @@ pub struct Backprojection {
 /// Parameters of combining lights, as declared in `light/combine.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Combine {
+pub struct CombineUniform {
     pub dims: [u32; 3],
     pub bricks: u32,
     pub voxel_step: f32,
@@ -238,7 +243,7 @@ pub struct Combine {
 /// Transforms between index and scene space, as declared in `common/space.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Space {
+pub struct SpaceUniform {
     pub scene_from_index_x: [f32; 4],
     pub scene_from_index_y: [f32; 4],
     pub scene_from_index_z: [f32; 4],
@@ -247,7 +252,7 @@ pub struct Space {
     pub index_from_scene_z: [f32; 4],
 }
 
-impl Space {
+impl SpaceUniform {
     pub fn new(scene: &SceneSpace) -> Self {
         let [scene_from_index_x, scene_from_index_y, scene_from_index_z] = rows(&scene.scene_from_index);
         let [index_from_scene_x, index_from_scene_y, index_from_scene_z] = rows(&scene.index_from_scene);
@@ -265,60 +270,60 @@ impl Space {
 /// Parameters of the eye pass, as declared in `shading/shade.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Eye {
-    pub frame: SheetFrame,
-    pub shading: Shading,
-    pub space: Space,
+pub struct EyeUniform {
+    pub frame: SheetFrameUniform,
+    pub shading: ShadingUniform,
+    pub space: SpaceUniform,
     pub eye: [f32; 4],
     pub first_row: u32,
     pub end_row: u32,
     pub dilation: i32,
-    pub dark: f32,
+    pub min_transmittance: f32,
     pub gradient_pixels: i32,
     pub gradient_slabs: i32,
     pub runs: u32,
-    pub near_edge: f32,
+    pub voxel_edge: f32,
     pub combined_lookup: [f32; 3],
     pub pad0: f32,
-    pub seen: Cut,
-    pub faces: Cut,
-    pub shading_cut: Cut,
-    pub sky: Sky,
-    pub bounces: Bounces,
-    pub lights: [Light; crate::model::MAX_LIGHTS],
+    pub visible_cut: CutUniform,
+    pub face_cut: CutUniform,
+    pub shading_cut: CutUniform,
+    pub sky: SkyUniform,
+    pub scattered_light: ScatteredLightUniform,
+    pub lights: [LightUniform; crate::model::MAX_LIGHTS],
 }
 
 /// Parameters of the floor pass, as declared in `eye/floor.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Floor {
-    pub frame: SheetFrame,
-    pub space: Space,
-    pub shading: Shading,
-    pub shading_cut: Cut,
+pub struct FloorUniform {
+    pub frame: SheetFrameUniform,
+    pub space: SpaceUniform,
+    pub shading: ShadingUniform,
+    pub shading_cut: CutUniform,
     pub plane: [f32; 4],
     pub up: [f32; 3],
     pub height: f32,
     pub color: [f32; 3],
     pub opacity: f32,
     pub radius: f32,
-    pub fade: f32,
-    pub light_share: f32,
+    pub fade_width: f32,
+    pub inverse_balance: f32,
     pub shadow_only: f32,
     pub first_row: u32,
     pub end_row: u32,
     pub runs: u32,
     pub pad0: u32,
-    pub sky: Sky,
+    pub sky: SkyUniform,
     pub map_x: [f32; 4],
     pub map_y: [f32; 4],
-    pub lights: [Light; crate::model::MAX_LIGHTS],
+    pub lights: [LightUniform; crate::model::MAX_LIGHTS],
 }
 
 /// Parameters of the display pass, as declared in `output/tone_map.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Display {
+pub struct DisplayUniform {
     pub top: [f32; 4],
     pub bottom: [f32; 4],
     pub transparent: u32,

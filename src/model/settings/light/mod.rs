@@ -1,27 +1,27 @@
 //! Light sources: settings of a light, and lights resolved into scene space.
 
-pub(in crate::model) mod area;
-pub(in crate::model) mod risen;
-pub(in crate::model) mod scattering;
-pub(in crate::model) mod sky;
-pub(in crate::model) mod surroundings;
+pub(crate) mod area_light;
+pub(crate) mod environment_map;
+pub(crate) mod horizon_clipping;
+pub(crate) mod scattering;
+pub(crate) mod sky;
 
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-use self::area::{LightArea, LightShape};
+use self::area_light::{LightArea, LightShape};
 use crate::model::Camera;
 
 /// Largest number of lights; each has its own attenuation volume.
 pub const MAX_LIGHTS: usize = 8;
 
 /// Largest number of characters in a name: more than any list or label shows.
-pub const MAX_NAME: usize = 200;
+pub const MAX_NAME_CHARS: usize = 200;
 
 /// Light geometry: parallel rays or rays from a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum LightKind {
+pub enum LightGeometry {
     /// Parallel rays from infinitely far away, along the line from `position` to the centre of the volume.
     Parallel,
     /// Rays in all directions from the point `position`.
@@ -42,7 +42,7 @@ pub enum LightLock {
 /// Spotlight cone of a perspective light around the line to the origin (P §1, "with or without hood").
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Hood {
+pub struct Spotlight {
     /// Limits the light to the cone.
     pub on: bool,
     /// Half the opening angle in degrees: from the axis to where no light is left.
@@ -51,7 +51,7 @@ pub struct Hood {
     pub rim_deg: f64,
 }
 
-impl Default for Hood {
+impl Default for Spotlight {
     fn default() -> Self {
         Self { on: false, half_angle_deg: 25.0, rim_deg: 5.0 }
     }
@@ -60,11 +60,11 @@ impl Default for Hood {
 /// Light source with its position, colour, shape and shadow settings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Light {
+pub struct LightSettings {
     /// Name given by the user.
     pub name: String,
     /// Light geometry: parallel or perspective.
-    pub kind: LightKind,
+    pub kind: LightGeometry,
     /// Position in scene units. A parallel light uses only its direction as seen from the origin, so that switching
     /// the kind back and forth loses nothing.
     pub position: [f64; 3],
@@ -79,7 +79,7 @@ pub struct Light {
     /// Coordinate frame of `position`.
     pub lock: LightLock,
     /// Spotlight cone, only for perspective lights.
-    pub hood: Hood,
+    pub hood: Spotlight,
     /// Factor for the extinction of material for this light.
     pub density_scale: f64,
     /// Shape of the emitting surface. Anything but a point has penumbrae.
@@ -94,18 +94,18 @@ pub struct Light {
     pub turn_deg: f64,
 }
 
-impl Default for Light {
+impl Default for LightSettings {
     fn default() -> Self {
         Self {
             name: "Light".to_owned(),
-            kind: LightKind::Parallel,
+            kind: LightGeometry::Parallel,
             position: [2.0, -2.0, 2.5],
             color: [1.0; 3],
             intensity: 1.0,
             on: true,
             casts_shadows: true,
             lock: LightLock::Scene,
-            hood: Hood::default(),
+            hood: Spotlight::default(),
             density_scale: 1.0,
             shape: LightShape::Point,
             size: 1.0,
@@ -119,7 +119,7 @@ impl Default for Light {
 
 /// Cone of a spotlight, in cosines.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Cone {
+pub struct SpotlightCone {
     /// Unit vector in scene space from the light along the axis of the cone.
     pub axis: DVec3,
     /// Cosine of the angle from the axis up to which the light has its full intensity.
@@ -128,12 +128,12 @@ pub struct Cone {
     pub cos_outer: f64,
 }
 
-impl Cone {
+impl SpotlightCone {
     /// Cone without a limit: −1, the smallest cosine, lies within full intensity.
-    const OPEN: Self = Self { axis: DVec3::NEG_Z, cos_inner: -2.0, cos_outer: -3.0 };
+    const UNLIMITED: Self = Self { axis: DVec3::NEG_Z, cos_inner: -2.0, cos_outer: -3.0 };
 
     /// Returns the share of light at a cosine of the angle to the axis: 3t² − 2t³ across the rim.
-    pub fn share(&self, cosine: f64) -> f64 {
+    pub fn attenuation(&self, cosine: f64) -> f64 {
         let t = ((cosine - self.cos_outer) / (self.cos_inner - self.cos_outer)).clamp(0.0, 1.0);
         t * t * (3.0 - 2.0 * t)
     }
@@ -143,7 +143,7 @@ impl Cone {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneLight {
     /// Light geometry: parallel or perspective.
-    pub kind: LightKind,
+    pub kind: LightGeometry,
     /// Position in scene space of a perspective light; for a parallel light, any point in its direction.
     pub position: [f64; 3],
     /// Colour as sRGB, 0 … 1.
@@ -155,16 +155,16 @@ pub struct SceneLight {
     /// True if material attenuates the light.
     pub casts_shadows: bool,
     /// Spotlight cone of a perspective light.
-    pub hood: Hood,
+    pub hood: Spotlight,
     /// Factor for the extinction of material for this light.
     pub density_scale: f64,
     /// Extent of an area light; `None` for a point.
     pub area: Option<LightArea>,
 }
 
-impl Light {
+impl LightSettings {
     /// Resolves the light into scene space, for the given camera.
-    pub fn in_scene(&self, camera: &Camera) -> SceneLight {
+    pub fn resolve(&self, camera: &Camera) -> SceneLight {
         let Self {
             name: _,
             kind,
@@ -208,8 +208,8 @@ impl Light {
     /// Returns half the width and half the height: in scene units, or as tangents for a parallel light.
     fn half_extent(&self) -> DVec2 {
         let half = match self.kind {
-            LightKind::Parallel => (0.5 * self.angle_deg).to_radians().tan(),
-            LightKind::Perspective => 0.5 * self.size,
+            LightGeometry::Parallel => (0.5 * self.angle_deg).to_radians().tan(),
+            LightGeometry::Perspective => 0.5 * self.size,
         };
         match self.shape {
             LightShape::Rectangle => DVec2::new(half, half / self.aspect),
@@ -219,7 +219,7 @@ impl Light {
 
     /// Changes the coordinate frame of the position without moving the light.
     pub fn set_lock(&mut self, lock: LightLock, camera: &Camera) {
-        let place = self.in_scene(camera).position;
+        let place = self.resolve(camera).position;
         self.lock = lock;
         self.set_scene_position(place.into(), camera);
     }
@@ -240,21 +240,21 @@ impl Light {
 
 impl Default for SceneLight {
     fn default() -> Self {
-        Light::default().in_scene(&Camera::default())
+        LightSettings::default().resolve(&Camera::default())
     }
 }
 
 impl SceneLight {
     /// Returns the spotlight cone; unlimited for parallel lights and without a hood.
-    pub fn cone(&self) -> Cone {
-        let Hood { on, half_angle_deg, rim_deg } = self.hood;
-        if !on || self.kind == LightKind::Parallel {
-            return Cone::OPEN;
+    pub fn cone(&self) -> SpotlightCone {
+        let Spotlight { on, half_angle_deg, rim_deg } = self.hood;
+        if !on || self.kind == LightGeometry::Parallel {
+            return SpotlightCone::UNLIMITED;
         }
         let cos_outer = half_angle_deg.to_radians().cos();
         let cos_inner = (half_angle_deg - rim_deg).max(0.0).to_radians().cos();
         // A rim of zero width would divide by zero; a millionth is sharper than any pixel.
-        Cone { axis: -self.direction(), cos_inner: cos_inner.max(cos_outer + 1e-6), cos_outer }
+        SpotlightCone { axis: -self.direction(), cos_inner: cos_inner.max(cos_outer + 1e-6), cos_outer }
     }
 
     /// Returns the unit vector from the origin towards the light.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::Resolution;
+use crate::model::LightVolumeResolution;
 
 /// Largest number of simulated bounces; with three or more, the rest of the series is extrapolated geometrically from
 /// the last two.
@@ -19,7 +19,7 @@ pub const MAX_ANISOTROPY: f64 = 0.9;
 /// voxels, and cached.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Scattering {
+pub struct ScatteringSettings {
     /// Number of simulated bounces, at most [`MAX_BOUNCES`]; 0 disables scattering.
     pub bounces: u32,
     /// Scattering albedo: share of interacting light that is scattered, times the colour; the rest is absorbed.
@@ -35,18 +35,18 @@ pub struct Scattering {
     /// Number of directions of the last bounce, which is the visible one.
     pub directions: u32,
     /// Resolution of the volume of bounced light.
-    pub resolution: Resolution,
+    pub resolution: LightVolumeResolution,
 }
 
-impl Scattering {
+impl ScatteringSettings {
     /// Returns the number of directions of all bounces but the last, which has `directions`: the last bounce evens
     /// out their irregularities.
-    pub fn directions_of_a_bounce(directions: u32) -> u32 {
+    pub fn inner_bounce_directions(directions: u32) -> u32 {
         (directions / 4).clamp(6, 14)
     }
 }
 
-impl Default for Scattering {
+impl Default for ScatteringSettings {
     fn default() -> Self {
         Self {
             bounces: 0,
@@ -55,7 +55,7 @@ impl Default for Scattering {
             anisotropy: 0.0,
             density_scale: 1.0,
             directions: 64,
-            resolution: Resolution::Quarter,
+            resolution: LightVolumeResolution::Quarter,
         }
     }
 }

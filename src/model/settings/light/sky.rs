@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
-use crate::model::{Resolution, SceneAxis, linear_from_srgb};
+use crate::model::{LightVolumeResolution, SceneAxis, linear_from_srgb};
 
 /// Radiance model of the sky.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -24,13 +24,15 @@ pub const SKY_DIRECTIONS: std::ops::RangeInclusive<u32> = 6..=64;
 
 /// Distance in front of a surface at which sky visibility is looked up, in blocks of its volume: nearer material is
 /// the surface itself, which the blocks blur.
-pub const SKY_AHEAD: f64 = 0.75;
+pub const SKY_LOOKUP_DISTANCE: f64 = 0.75;
 
-/// Ambient light from all directions. Only sky visibility is cached ([`crate::plan::SkyKey`]), so that changing
+/// Ambient light from all directions.
+///
+/// Only sky visibility is cached ([`crate::plan::SkyKey`]), so that changing
 /// colours, brightness and rotation of the sky costs one image and no more, unless its light bounces.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Sky {
+pub struct SkySettings {
     /// Radiance model of the sky.
     pub mode: SkyMode,
     /// Intensity as the fraction of its colour that an unoccluded surface reflects: 1 is white paper under a white
@@ -43,7 +45,7 @@ pub struct Sky {
     /// Colour from below, sRGB, 0 … 1.
     pub ground: [f32; 3],
     /// Linear approximation of an environment map.
-    pub picture: SkyPicture,
+    pub picture: EnvironmentLight,
     /// Tilt of the zenith from the vertical, in degrees: 90 is a wall of light, a large window.
     pub tilt_deg: f64,
     /// Direction of the tilt about the vertical, in degrees, counted as a camera's azimuth; environment maps turn
@@ -54,10 +56,10 @@ pub struct Sky {
     /// Number of directions for sky visibility.
     pub directions: u32,
     /// Resolution of the sky visibility volume.
-    pub resolution: Resolution,
+    pub resolution: LightVolumeResolution,
 }
 
-impl Default for Sky {
+impl Default for SkySettings {
     fn default() -> Self {
         Self {
             mode: SkyMode::Off,
@@ -66,12 +68,12 @@ impl Default for Sky {
             zenith: [0.80, 0.89, 1.0],
             horizon: [0.95, 0.96, 1.0],
             ground: [0.52, 0.47, 0.42],
-            picture: SkyPicture::default(),
+            picture: EnvironmentLight::default(),
             tilt_deg: 0.0,
             turn_deg: 0.0,
             density_scale: 1.0,
             directions: 64,
-            resolution: Resolution::Half,
+            resolution: LightVolumeResolution::Half,
         }
     }
 }
@@ -80,7 +82,7 @@ impl Default for Sky {
 /// been read.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct SkyPicture {
+pub struct EnvironmentLight {
     /// Name of the environment map's file.
     pub name: String,
     /// Mean radiance, linear RGB.
@@ -90,14 +92,14 @@ pub struct SkyPicture {
     pub slope: [[f64; 3]; 3],
 }
 
-impl Default for SkyPicture {
+impl Default for EnvironmentLight {
     fn default() -> Self {
         Self { name: String::new(), mean: [1.0; 3], slope: [[0.0; 3]; 3] }
     }
 }
 
 /// Largest component of an environment map's radiance: with a mean luminance of 1, pure blue light has 14.
-pub const MAX_PICTURE_RADIANCE: f64 = 100.0;
+pub const MAX_ENVIRONMENT_RADIANCE: f64 = 100.0;
 
 /// Radiance that is linear in the direction, for each colour: L(ω) = `mean` + `slope` · ω, in units in which an
 /// unoccluded white surface under a sky of 1 is 1.
@@ -109,7 +111,7 @@ pub struct SkyRadiance {
     pub slope: [DVec3; 3],
 }
 
-impl Sky {
+impl SkySettings {
     /// Returns true if there is a sky.
     pub fn is_on(&self) -> bool {
         self.mode != SkyMode::Off
@@ -146,7 +148,7 @@ impl Sky {
                 })
             }
             SkyMode::Picture => {
-                let SkyPicture { name: _, mean, slope } = &self.picture;
+                let EnvironmentLight { name: _, mean, slope } = &self.picture;
                 let scene_from_sky = self.scene_from_sky(up) * self.intensity;
                 Some(SkyRadiance {
                     mean: mean.map(|c| c * self.intensity),
@@ -163,13 +165,13 @@ mod tests {
 
     #[test]
     fn a_gradient_is_as_bright_as_its_colours_on_the_mean() {
-        let sky = Sky {
+        let sky = SkySettings {
             mode: SkyMode::Gradient,
             intensity: 2.0,
             zenith: [1.0; 3],
             horizon: [0.5; 3],
             ground: [0.0; 3],
-            ..Sky::default()
+            ..SkySettings::default()
         };
         let radiance = sky.radiance(SceneAxis::PlusY).expect("a sky");
         let horizon = 2.0 * linear_from_srgb(0.5);
@@ -186,7 +188,7 @@ mod tests {
 
     #[test]
     fn the_zenith_leans_to_where_it_is_turned() {
-        let sky = |tilt_deg, turn_deg| Sky { tilt_deg, turn_deg, ..Sky::default() };
+        let sky = |tilt_deg, turn_deg| SkySettings { tilt_deg, turn_deg, ..SkySettings::default() };
         let near = |a: DVec3, b: DVec3| assert!((a - b).length() < 1e-12, "{a} {b}");
         near(sky(0.0, 70.0).zenith_direction(SceneAxis::PlusZ), DVec3::Z);
         near(sky(90.0, 0.0).zenith_direction(SceneAxis::PlusZ), DVec3::X);
@@ -196,12 +198,19 @@ mod tests {
 
     #[test]
     fn surroundings_turn_about_the_vertical() {
-        let picture = SkyPicture { slope: [[1.0, 0.0, 0.5], [0.0; 3], [0.0; 3]], ..SkyPicture::default() };
-        let sky = Sky { mode: SkyMode::Picture, intensity: 2.0, turn_deg: 90.0, picture, ..Sky::default() };
+        let picture =
+            EnvironmentLight { slope: [[1.0, 0.0, 0.5], [0.0; 3], [0.0; 3]], ..EnvironmentLight::default() };
+        let sky = SkySettings {
+            mode: SkyMode::Picture,
+            intensity: 2.0,
+            turn_deg: 90.0,
+            picture,
+            ..SkySettings::default()
+        };
         let radiance = sky.radiance(SceneAxis::PlusZ).expect("a sky");
         assert_eq!(radiance.mean, [2.0; 3]);
         assert!((radiance.slope[0] - DVec3::new(0.0, 2.0, 1.0)).length() < 1e-12, "{radiance:?}");
-        let leaning = Sky { tilt_deg: 90.0, turn_deg: 0.0, ..sky };
+        let leaning = SkySettings { tilt_deg: 90.0, turn_deg: 0.0, ..sky };
         let slope = leaning.radiance(SceneAxis::PlusZ).expect("a sky").slope[0];
         assert!((slope - DVec3::new(1.0, 0.0, -2.0)).length() < 1e-12, "{slope}");
     }

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::io::{BufRead, Read as _};
 
 use super::super::LoadError;
-use crate::data::attempt::{Attempt, quoted};
+use crate::data::load_context::{LoadContext, quoted};
 
 /// Maximum size of a header: real ones have a kilobyte, plus a name for each slice if they list files.
-const LONGEST_HEADER_BYTES: u64 = 4 << 20;
+const MAX_HEADER_BYTES: u64 = 4 << 20;
 
 /// Field that names the data and ends the header.
 pub(super) const DATA_FILE: &str = "ElementDataFile";
@@ -16,12 +16,12 @@ pub(super) const DATA_FILE: &str = "ElementDataFile";
 pub(super) fn is_metaimage(start: &[u8]) -> bool {
     start
         .split(|&byte| byte == b'\n')
-        .take_while(|line| field(line).is_some())
-        .any(|line| field(line).is_some_and(|(name, _)| name == "ndims"))
+        .take_while(|line| parse_field(line).is_some())
+        .any(|line| parse_field(line).is_some_and(|(name, _)| name == "ndims"))
 }
 
 /// Splits a line into its field name in lower case and its value.
-fn field(line: &[u8]) -> Option<(String, String)> {
+fn parse_field(line: &[u8]) -> Option<(String, String)> {
     let separator =
         line.iter().position(|&byte| byte == b'=').or_else(|| line.iter().position(|&byte| byte == b':'))?;
     let name = str::from_utf8(line.get(..separator)?).ok()?.trim();
@@ -33,7 +33,7 @@ fn field(line: &[u8]) -> Option<(String, String)> {
 
 /// Header fields of a `MetaImage`, as text.
 #[derive(Debug)]
-pub(super) struct Header {
+pub(super) struct MetaImageHeader {
     /// Values by field name in lower case.
     fields: BTreeMap<String, String>,
     /// Lines after the last field if it announces a list: file names.
@@ -42,18 +42,18 @@ pub(super) struct Header {
     pub(super) data_start: u64,
 }
 
-impl Header {
+impl MetaImageHeader {
     /// Reads up to the field that names the data, and the list that it may announce.
-    pub(super) fn read(attempt: Attempt<'_>, reader: &mut impl BufRead) -> Result<Self, LoadError> {
-        let mut reader = reader.take(LONGEST_HEADER_BYTES);
+    pub(super) fn read(attempt: LoadContext<'_>, reader: &mut impl BufRead) -> Result<Self, LoadError> {
+        let mut reader = reader.take(MAX_HEADER_BYTES);
         let mut line = Vec::new();
         let (mut fields, mut list) = (BTreeMap::new(), Vec::new());
         let (mut data_start, mut is_list) = (0, false);
         loop {
             line.clear();
-            reader.read_until(b'\n', &mut line).map_err(|error| attempt.io(error))?;
+            reader.read_until(b'\n', &mut line).map_err(|error| attempt.io_error(error))?;
             if !line.ends_with(b"\n") && reader.limit() == 0 {
-                return Err(attempt.limit(
+                return Err(attempt.limit_error(
                     "header",
                     "the header has no end within 4 MiB",
                     format!("check that its last field is {DATA_FILE}"),
@@ -68,12 +68,12 @@ impl Header {
                 continue;
             }
             // Lines that are no fields are ignored.
-            let Some((name, value)) = field(&line) else { continue };
+            let Some((name, value)) = parse_field(&line) else { continue };
             let is_last = name == DATA_FILE.to_lowercase();
             is_list = is_last && value.split_whitespace().next() == Some("LIST");
             fields.insert(name, value);
             if is_last {
-                data_start = LONGEST_HEADER_BYTES - reader.limit();
+                data_start = MAX_HEADER_BYTES - reader.limit();
                 if !is_list {
                     break;
                 }
@@ -90,18 +90,24 @@ impl Header {
     }
 
     /// Returns name and value of the first of several fields that the header has.
-    pub(super) fn first<'a>(&self, names: &[&'a str]) -> Option<(&'a str, &str)> {
+    pub(super) fn first_of<'a>(&self, names: &[&'a str]) -> Option<(&'a str, &str)> {
         names.iter().find_map(|&name| Some((name, self.get(name)?)))
     }
 
     /// Returns the value of a mandatory field; `help` tells the user what it should be.
-    pub(super) fn require(&self, attempt: Attempt<'_>, name: &str, help: &str) -> Result<&str, LoadError> {
-        self.get(name).ok_or_else(|| attempt.bad_input(name, format!("the field {name} is missing"), help))
+    pub(super) fn require(
+        &self,
+        attempt: LoadContext<'_>,
+        name: &str,
+        help: &str,
+    ) -> Result<&str, LoadError> {
+        self.get(name)
+            .ok_or_else(|| attempt.bad_input_error(name, format!("the field {name} is missing"), help))
     }
 
     /// Returns the boolean value of a field; `None` if it is absent.
     pub(super) fn flag(&self, names: &[&str]) -> Option<bool> {
-        let (_, value) = self.first(names)?;
+        let (_, value) = self.first_of(names)?;
         // Decided by the first letter, as in MetaIO.
         Some(value.starts_with(['T', 't', '1', 'Y', 'y']))
     }
@@ -114,16 +120,16 @@ impl Header {
     /// Returns the numbers of the first of several fields that the header has.
     pub(super) fn numbers(
         &self,
-        attempt: Attempt<'_>,
+        attempt: LoadContext<'_>,
         names: &[&str],
         count: usize,
     ) -> Result<Option<Vec<f64>>, LoadError> {
-        let Some((name, text)) = self.first(names) else { return Ok(None) };
+        let Some((name, text)) = self.first_of(names) else { return Ok(None) };
         let numbers: Option<Vec<f64>> =
             text.split_whitespace().take(count + 1).map(|word| word.parse().ok()).collect();
         match numbers.filter(|numbers| numbers.len() == count) {
             Some(numbers) => Ok(Some(numbers)),
-            None => Err(attempt.bad_input(
+            None => Err(attempt.bad_input_error(
                 name,
                 format!("{count} numbers were expected, {} was found", quoted(text)),
                 "correct the header",

@@ -1,20 +1,20 @@
 //! Hints on the values of a `MetaImage`: from its own fields, and from DICOM attributes by their tags, which ITK
 //! programs write beside them.
 
-use super::header::Header;
-use crate::data::{Hints, Modality};
+use super::header::MetaImageHeader;
+use crate::data::{Modality, ValueMetadata};
 
 /// Collects the hints that a header gives on its values.
-pub(super) fn of(header: &Header) -> Hints {
+pub(super) fn hints_from_header(header: &MetaImageHeader) -> ValueMetadata {
     let text = |name| header.get(name).unwrap_or_default();
     let (modality, comment) = (text("Modality"), text("Comment"));
     let known = [
-        Modality::of_code(modality.strip_prefix("MET_MOD_").unwrap_or(modality)),
-        Modality::of_code(text("0008|0060")),
-        Modality::of_description(comment),
+        Modality::from_code(modality.strip_prefix("MET_MOD_").unwrap_or(modality)),
+        Modality::from_code(text("0008|0060")),
+        Modality::from_description(comment),
     ];
     let modality = known.into_iter().find(|&modality| modality != Modality::Unknown).unwrap_or_default();
-    let mut hints = Hints::default();
+    let mut hints = ValueMetadata::default();
     hints.modality = modality;
     hints.set_acquisition(comment);
     hints.set_acquisition(text("0008|103e"));

@@ -3,11 +3,11 @@
 //! After `fio.cpp`, `tags.cpp` and `colortab.cpp` of `FreeSurfer` (`TAGreadStart`, `znzCTABreadFromBinary`): five
 //! real numbers on the acquisition, then tags. All numbers are big-endian.
 
-use crate::data::Labels;
+use crate::data::FileLabelTable;
 
 /// Maximum number of bytes read behind the voxels: a table of the two thousand labels of the finest atlases takes 100
 /// KiB, and the command lines that made the file precede it.
-pub(super) const MOST_BYTES: u64 = 4 << 20;
+pub(super) const MAX_FOOTER_BYTES: u64 = 4 << 20;
 
 /// Size of the acquisition parameters: repetition time, flip angle, echo time, inversion time, field of view.
 const ACQUISITION_BYTES: usize = 20;
@@ -19,18 +19,18 @@ const OLD_SURFACE_GEOMETRY: i32 = 20;
 const OLD_TRANSFORM: i32 = 30;
 
 /// Version of tables in which each entry stores its label number.
-const WITH_NUMBERS: i32 = -2;
+const NUMBERED_VERSION: i32 = -2;
 
 /// Parses the labels from the bytes behind the voxels; empty if there is no table, or an invalid one.
-pub(super) fn labels(footer: &[u8]) -> Labels {
-    find(&mut Bytes { left: footer }).unwrap_or_default()
+pub(super) fn parse_labels(footer: &[u8]) -> FileLabelTable {
+    find_table(&mut BigEndianCursor { remaining: footer }).unwrap_or_default()
 }
 
-fn find(bytes: &mut Bytes<'_>) -> Option<Labels> {
+fn find_table(bytes: &mut BigEndianCursor<'_>) -> Option<FileLabelTable> {
     bytes.take(ACQUISITION_BYTES)?;
     loop {
         let skip = match bytes.int()? {
-            OLD_COLOR_TABLE => return table(bytes),
+            OLD_COLOR_TABLE => return parse_table(bytes),
             OLD_REAL_RAS | OLD_SURFACE_GEOMETRY => 0,
             // The stored length includes a terminating zero that is not written.
             OLD_TRANSFORM => i64::from(bytes.int()?) - 1,
@@ -42,14 +42,14 @@ fn find(bytes: &mut Bytes<'_>) -> Option<Labels> {
     }
 }
 
-fn table(bytes: &mut Bytes<'_>) -> Option<Labels> {
+fn parse_table(bytes: &mut BigEndianCursor<'_>) -> Option<FileLabelTable> {
     let first = bytes.int()?;
-    let has_numbers = first == WITH_NUMBERS;
+    let has_numbers = first == NUMBERED_VERSION;
     // Highest label number in version 2, number of entries in the older version.
     let count = if has_numbers { bytes.int()? } else { first };
     bytes.text()?;
     let count = if has_numbers { bytes.int()? } else { count };
-    let mut labels = Labels::default();
+    let mut labels = FileLabelTable::default();
     for at in 0..count {
         let number = if has_numbers { bytes.int()? } else { at };
         let name = bytes.text()?;
@@ -61,14 +61,14 @@ fn table(bytes: &mut Bytes<'_>) -> Option<Labels> {
 }
 
 /// Cursor over the bytes that are still to be parsed.
-struct Bytes<'a> {
-    left: &'a [u8],
+struct BigEndianCursor<'a> {
+    remaining: &'a [u8],
 }
 
-impl<'a> Bytes<'a> {
+impl<'a> BigEndianCursor<'a> {
     fn take(&mut self, count: usize) -> Option<&'a [u8]> {
-        let (taken, left) = self.left.split_at_checked(count)?;
-        self.left = left;
+        let (taken, left) = self.remaining.split_at_checked(count)?;
+        self.remaining = left;
         Some(taken)
     }
 

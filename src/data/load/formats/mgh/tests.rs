@@ -3,9 +3,9 @@
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::*;
-use crate::data::load::tests::shared::{assert_refused, gzip, load_bytes};
-use crate::data::load::{Choice, LoadErrorKind};
-use crate::data::{DataKind, Label, Samples};
+use crate::data::load::tests::helpers::{assert_refused, gzip, load_bytes};
+use crate::data::load::{LoadErrorKind, VolumeChoice};
+use crate::data::{DataKind, FileLabel, Samples};
 
 /// Builder of an MGH file, field by field.
 #[derive(Clone)]
@@ -40,7 +40,7 @@ impl MghFile {
     }
 
     fn loaded(&self) -> Volume {
-        load_bytes("a.mgh", &self.bytes(), Choice::default()).unwrap()
+        load_bytes("a.mgh", &self.bytes(), VolumeChoice::default()).unwrap()
     }
 }
 
@@ -97,7 +97,7 @@ fn every_type_is_read() {
         // Detected by content, whatever the file name; gzipped or not.
         for name in ["scan", "scan.mgz", "scan.bin"] {
             for bytes in [made.bytes(), gzip(&made.bytes())] {
-                let volume = load_bytes(name, &bytes, Choice::default()).unwrap();
+                let volume = load_bytes(name, &bytes, VolumeChoice::default()).unwrap();
                 assert_eq!(volume.samples(), &expected, "{name}");
                 assert_eq!(volume.name(), name.trim_end_matches(".mgz"));
             }
@@ -130,20 +130,20 @@ fn voxels_lie_where_the_header_says() {
     assert!(unplaced.remarks()[0].contains("goodRASFlag"), "{:?}", unplaced.remarks());
     let mut flat = twelve();
     flat.place[6..9].copy_from_slice(&[1.0, 0.0, 0.0]);
-    assert!(load_bytes("a.mgh", &flat.bytes(), Choice::default()).unwrap().remarks().len() == 1);
+    assert!(load_bytes("a.mgh", &flat.bytes(), VolumeChoice::default()).unwrap().remarks().len() == 1);
 }
 
 #[test]
 fn volumes_behind_each_other_are_time_steps() {
     let made = MghFile::new(0, (0..24).collect()).with_int(4, 2);
     for bytes in [made.bytes(), gzip(&made.bytes())] {
-        let Err(LoadError::Several { dimension: Dimension::Frame, offers, .. }) =
-            load_bytes("a.mgz", &bytes, Choice::default())
+        let Err(LoadError::Several { dimension: FileDimension::Frame, offers, .. }) =
+            load_bytes("a.mgz", &bytes, VolumeChoice::default())
         else {
             panic!("there are two");
         };
         assert_eq!((offers.len(), offers[1].dims), (2, Some([2, 3, 2])));
-        let second = Choice { frame: Some(1), ..Choice::default() };
+        let second = VolumeChoice { frame: Some(1), ..VolumeChoice::default() };
         let volume = load_bytes("a.mgz", &bytes, second).unwrap();
         assert_eq!(*volume.samples(), Samples::U8((12..24).collect()));
     }
@@ -155,26 +155,26 @@ fn labels_have_the_names_of_the_table_behind_them() {
     let mut made = MghFile::new(1, numbers.map(i32::to_be_bytes).concat());
     made.footer = color_table(true);
     for bytes in [made.bytes(), gzip(&made.bytes())] {
-        let volume = load_bytes("aseg.mgz", &bytes, Choice::default()).unwrap();
+        let volume = load_bytes("aseg.mgz", &bytes, VolumeChoice::default()).unwrap();
         let color = Some([220, 216, 20].map(|part: u8| f32::from(part) / 255.0));
-        let expected = Label { name: "Left-Hippocampus".to_owned(), color };
-        assert_eq!(volume.hints().labels.get(17), Some(&expected));
+        let expected = FileLabel { name: "Left-Hippocampus".to_owned(), color };
+        assert_eq!(volume.metadata().labels.get(17), Some(&expected));
         assert!(matches!(volume.kind().kind, DataKind::LabelMap { .. }), "{:?}", volume.kind());
     }
     made.footer = color_table(false);
     assert_eq!(
-        made.loaded().hints().labels.get(1).map(|label| label.name.as_str()),
+        made.loaded().metadata().labels.get(1).map(|label| label.name.as_str()),
         Some("Left-Hippocampus")
     );
     // The intent code above the version marks labels, too.
     made.footer = Vec::new();
     let intended = made.clone().with_int(0, 0x101).loaded();
-    assert_eq!((intended.hints().meaning, intended.hints().labels.len()), (Meaning::Labels, 0));
-    assert_eq!(made.loaded().hints().meaning, Meaning::Unknown);
+    assert_eq!((intended.metadata().meaning, intended.metadata().labels.len()), (ValueMeaning::Labels, 0));
+    assert_eq!(made.loaded().metadata().meaning, ValueMeaning::Unknown);
     // A table behind real-valued measurements names nothing.
     let mut floats = MghFile::new(3, [0.5f32; 12].map(f32::to_be_bytes).concat());
     floats.footer = color_table(true);
-    assert!(floats.loaded().hints().labels.is_empty());
+    assert!(floats.loaded().metadata().labels.is_empty());
 }
 
 #[test]
@@ -202,14 +202,14 @@ fn every_cut_is_refused() {
     let whole = made.bytes();
     for cut in 0..HEADER_BYTES + 12 {
         assert_refused(
-            load_bytes("a.mgh", &whole[..cut], Choice::default()),
+            load_bytes("a.mgh", &whole[..cut], VolumeChoice::default()),
             LoadErrorKind::BadInput,
             &["a.mgh", "truncated"],
         );
     }
     let packed = gzip(&whole);
     for cut in 11..packed.len() - 1 {
-        let error = load_bytes("a.mgz", &packed[..cut], Choice::default()).unwrap_err();
+        let error = load_bytes("a.mgz", &packed[..cut], VolumeChoice::default()).unwrap_err();
         assert_eq!(error.kind(), LoadErrorKind::BadInput, "{cut}: {error}");
     }
 }
@@ -235,7 +235,7 @@ fn headers_that_lie_are_refused() {
         (twelve().with_int(5, 77), LoadErrorKind::BadInput, "no type 77"),
         (twelve().with_int(1, 12).with_int(2, 1).with_int(3, 1), LoadErrorKind::BadInput, "surface"),
     ] {
-        assert_refused(load_bytes("a.mgz", &made.bytes(), Choice::default()), kind, &[words]);
+        assert_refused(load_bytes("a.mgz", &made.bytes(), VolumeChoice::default()), kind, &[words]);
     }
 }
 

@@ -1,15 +1,15 @@
 //! Header of an MRC file: 256 words of 4 bytes, which its definition counts from 1.
 
 use super::super::{Endian, LoadError};
-use crate::data::attempt::Attempt;
+use crate::data::load_context::LoadContext;
 
 pub(super) const HEADER_BYTES: usize = 1024;
 
 /// Maximum plausible number of voxels along an axis; a larger number shows a wrong byte order.
-const MOST_ALONG: i32 = 1 << 24;
+const MAX_AXIS_LENGTH: i32 = 1 << 24;
 
 /// Highest mode that any program writes: 101, packed 4 bits.
-const HIGHEST_MODE: i32 = 101;
+const MAX_MODE: i32 = 101;
 
 /// IMOD's stamp: "IMOD" as a little-endian integer.
 const IMOD_STAMP: i32 = 1_146_047_817;
@@ -23,22 +23,22 @@ const IMOD_ORIGIN_INVERTED: i32 = 4;
 /// Space group numbers that stand for stacks of volumes.
 const VOLUME_STACKS: std::ops::RangeInclusive<i32> = 401..=630;
 
-pub(super) struct Header {
+pub(super) struct MrcHeader {
     bytes: [u8; HEADER_BYTES],
     pub(super) endian: Endian,
 }
 
-impl Header {
+impl MrcHeader {
     /// Parses the header at the beginning of a file, and detects its byte order.
-    pub(super) fn of(attempt: Attempt<'_>, start: &[u8]) -> Result<Self, LoadError> {
+    pub(super) fn parse(attempt: LoadContext<'_>, start: &[u8]) -> Result<Self, LoadError> {
         let Some(&bytes) = start.first_chunk() else {
-            return Err(attempt.bad_input(
+            return Err(attempt.bad_input_error(
                 "header",
                 format!("the header is truncated: {HEADER_BYTES} bytes expected, {} found", start.len()),
                 "copy or download the file again",
             ));
         };
-        let as_order = |endian| Self { bytes, endian };
+        let with_endian = |endian| Self { bytes, endian };
         // The machine stamp is wrong in files that were converted only in part, so plausibility decides.
         let stamped = match bytes[212] {
             0x44 => Some(Endian::Little),
@@ -47,13 +47,13 @@ impl Header {
         };
         let first = stamped.unwrap_or(Endian::Little);
         let other = if first == Endian::Little { Endian::Big } else { Endian::Little };
-        let [stated, swapped] = [first, other].map(as_order);
-        if stated.is_plausible() || (stamped.is_some() && !swapped.is_plausible()) {
-            Ok(stated)
+        let [as_stamped, swapped] = [first, other].map(with_endian);
+        if as_stamped.is_plausible() || (stamped.is_some() && !swapped.is_plausible()) {
+            Ok(as_stamped)
         } else if swapped.is_plausible() {
             Ok(swapped)
         } else {
-            Err(attempt.bad_input(
+            Err(attempt.bad_input_error(
                 "header",
                 "it is no header of an MRC file: in neither byte order are its dimensions and its mode possible",
                 "check the file's name and format",
@@ -91,16 +91,17 @@ impl Header {
     }
 
     fn is_plausible(&self) -> bool {
-        self.ints(1).iter().all(|n| (1..=MOST_ALONG).contains(n)) && (0..=HIGHEST_MODE).contains(&self.mode())
+        self.ints(1).iter().all(|n| (1..=MAX_AXIS_LENGTH).contains(n))
+            && (0..=MAX_MODE).contains(&self.mode())
     }
 
     /// Returns the numbers of columns, rows and sections (`NX`, `NY`, `NZ`).
-    pub(super) fn dims(&self, attempt: Attempt<'_>) -> Result<[u64; 3], LoadError> {
+    pub(super) fn dims(&self, attempt: LoadContext<'_>) -> Result<[u64; 3], LoadError> {
         let [x, y, z] = self.ints(1);
         let along = |n: i32| u64::try_from(n).ok().filter(|&n| n > 0);
         match (along(x), along(y), along(z)) {
             (Some(x), Some(y), Some(z)) => Ok([x, y, z]),
-            _ => Err(attempt.bad_input(
+            _ => Err(attempt.bad_input_error(
                 "NX, NY, NZ",
                 format!("{x} x {y} x {z} are no dimensions"),
                 "every dimension must be at least 1",
@@ -122,17 +123,17 @@ impl Header {
     }
 
     /// Returns the number of sections of each volume of a stack; otherwise `all`.
-    pub(super) fn slices_of_a_volume(&self, all: u64) -> u64 {
+    pub(super) fn sections_per_volume(&self, all: u64) -> u64 {
         let sampled = u64::try_from(self.int(10)).unwrap_or(0);
         let is_stack = VOLUME_STACKS.contains(&self.space_group()) && sampled > 0;
         if is_stack && all.is_multiple_of(sampled) { sampled } else { all }
     }
 
     /// Returns the size of the extended header in bytes (`NSYMBT`), which lies between header and voxels.
-    pub(super) fn extension_bytes(&self, attempt: Attempt<'_>) -> Result<u64, LoadError> {
+    pub(super) fn extension_bytes(&self, attempt: LoadContext<'_>) -> Result<u64, LoadError> {
         let said = self.int(24);
         u64::try_from(said).map_err(|_negative| {
-            attempt.bad_input(
+            attempt.bad_input_error(
                 "NSYMBT",
                 format!("{said} bytes cannot be the length of an extended header"),
                 "copy or download the file again",

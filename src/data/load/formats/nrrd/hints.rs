@@ -1,8 +1,8 @@
 //! Hints on the values of an NRRD file: from the fields `sample units`, `content`, `old min` and `old max`, and from
 //! keys that programs add: 3D Slicer's segments, and DICOM attributes by their tags.
 
-use super::header::Header;
-use crate::data::{Hints, MAX_LABELS, Meaning, Modality};
+use super::header::NrrdHeader;
+use crate::data::{MAX_LABELS, Modality, ValueMeaning, ValueMetadata};
 
 /// Keys of the modality, in order of preference.
 const MODALITY: [&str; 3] = ["modality", "DICOM_0008_0060", "DICOM.Modality"];
@@ -34,14 +34,14 @@ const SEGMENTATION: [&str; 4] = [
     "Segmentation_SourceRepresentation",
 ];
 
-impl Header {
+impl NrrdHeader {
     /// Collects the hints that the header gives on its values.
-    pub(super) fn hints(&self) -> Hints {
-        let mut hints = Hints::default();
+    pub(super) fn hints(&self) -> ValueMetadata {
+        let mut hints = ValueMetadata::default();
         let first = |keys: &[&str]| keys.iter().find_map(|key| self.get_key(key)).unwrap_or_default();
         let content = self.get("content").unwrap_or_default();
-        hints.modality = match Modality::of_code(first(&MODALITY)) {
-            Modality::Unknown => Modality::of_description(content),
+        hints.modality = match Modality::from_code(first(&MODALITY)) {
+            Modality::Unknown => Modality::from_description(content),
             known => known,
         };
         hints.is_rescaled = self.get("old min").or_else(|| self.get("old max")).is_some();
@@ -49,7 +49,7 @@ impl Header {
         let is_segmentation = hints.modality == Modality::Segmentation
             || SEGMENTATION.iter().any(|key| self.get_key(key).is_some());
         if is_segmentation || !hints.labels.is_empty() {
-            hints.meaning = Meaning::Labels;
+            hints.meaning = ValueMeaning::Labels;
         }
         for unit in [self.get("sample units"), self.get_key(RESCALE_TYPE)].into_iter().flatten() {
             hints.set_unit(unit.trim_matches(['"', ' ']));
@@ -72,7 +72,7 @@ impl Header {
 
     /// Adds Slicer's segments: `Segment0_LabelValue:=1`, `Segment0_Name:=…`, `Segment0_Color:=0.5 0.7 0.5`. Segments
     /// of layers other than the first are skipped, as those layers are not read.
-    fn add_segments(&self, hints: &mut Hints) {
+    fn add_segments(&self, hints: &mut ValueMetadata) {
         for index in 0..MAX_LABELS {
             let part = |part: &str| self.get_key(&format!("Segment{index}_{part}"));
             let (value, name) = (part("LabelValue"), part("Name"));
@@ -85,14 +85,14 @@ impl Header {
             // Before layers existed, the label value was that of the segment's position.
             let number = value.map_or_else(|| Some(index as i64 + 1), |value| value.trim().parse().ok());
             if let Some(number) = number {
-                hints.labels.insert(number, name.unwrap_or_default(), part("Color").and_then(color));
+                hints.labels.insert(number, name.unwrap_or_default(), part("Color").and_then(parse_color));
             }
         }
     }
 }
 
 /// Parses three numbers as an sRGB colour.
-fn color(text: &str) -> Option<[f32; 3]> {
+fn parse_color(text: &str) -> Option<[f32; 3]> {
     let parts: Option<Vec<f32>> = text.split_whitespace().map(|part| part.parse().ok()).collect();
     parts?.try_into().ok()
 }

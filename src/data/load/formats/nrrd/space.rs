@@ -3,15 +3,15 @@
 use glam::DVec3;
 
 use super::super::LoadError;
-use super::header::Header;
-use crate::data::attempt::{Attempt, quoted};
+use super::header::NrrdHeader;
+use crate::data::load_context::{LoadContext, quoted};
 
 /// Returns the vectors of `space directions`, one per axis; `None` for a non-spatial axis.
 ///
 /// Without the field, or if it describes no axis at all, there are none.
 pub(super) fn directions(
-    attempt: Attempt<'_>,
-    header: &Header,
+    attempt: LoadContext<'_>,
+    header: &NrrdHeader,
     dimension: usize,
 ) -> Result<Option<Vec<Option<DVec3>>>, LoadError> {
     const FIELD: &str = "space directions";
@@ -20,7 +20,7 @@ pub(super) fn directions(
     };
     let space_dimension = space_dimension(attempt, header)?;
     let wrong = |why: String| {
-        attempt.bad_input(
+        attempt.bad_input_error(
             FIELD,
             why,
             format!("write {dimension} vectors like (1,0,0), or none, one for each axis"),
@@ -36,7 +36,7 @@ pub(super) fn directions(
             directions.push(None);
             continue;
         };
-        let direction = in_space(&components, space_dimension)
+        let direction = spatial_vector(&components, space_dimension)
             .ok_or_else(|| wrong(format!("{components:?} is no vector of {space_dimension} numbers")))?;
         // A time axis has steps in time alone.
         let is_time = direction == DVec3::ZERO && components.get(3).is_some_and(|&step| step != 0.0);
@@ -46,14 +46,14 @@ pub(super) fn directions(
 }
 
 /// Returns the centre of the first voxel, in the file's space; the origin if unknown.
-pub(super) fn origin(attempt: Attempt<'_>, header: &Header) -> Result<DVec3, LoadError> {
+pub(super) fn origin(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<DVec3, LoadError> {
     const FIELD: &str = "space origin";
     let Some(text) = header.get(FIELD) else {
         return Ok(DVec3::ZERO);
     };
     let space_dimension = space_dimension(attempt, header)?;
     let wrong = || {
-        attempt.bad_input(
+        attempt.bad_input_error(
             FIELD,
             format!("a vector of {space_dimension} finite numbers was expected, {} was found", quoted(text)),
             "write it like (0,0,0)",
@@ -67,7 +67,7 @@ pub(super) fn origin(attempt: Attempt<'_>, header: &Header) -> Result<DVec3, Loa
             Ok(DVec3::ZERO)
         }
         [Some(components)] => {
-            in_space(components, space_dimension).filter(|origin| origin.is_finite()).ok_or_else(wrong)
+            spatial_vector(components, space_dimension).filter(|origin| origin.is_finite()).ok_or_else(wrong)
         }
         _ => Err(wrong()),
     }
@@ -76,10 +76,10 @@ pub(super) fn origin(attempt: Attempt<'_>, header: &Header) -> Result<DVec3, Loa
 /// Returns the signs that convert the file's space to right-anterior-superior.
 ///
 /// Spaces without an anatomical meaning are left unchanged.
-pub(super) fn flips(attempt: Attempt<'_>, header: &Header) -> Result<DVec3, LoadError> {
+pub(super) fn ras_signs(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<DVec3, LoadError> {
     // Validates the dimension even if no vector uses it.
     space_dimension(attempt, header)?;
-    Ok(match name(header).as_str() {
+    Ok(match space_name(header).as_str() {
         "left-posterior-superior" | "lps" => DVec3::new(-1.0, -1.0, 1.0),
         "left-anterior-superior" | "las" => DVec3::new(-1.0, 1.0, 1.0),
         _ => DVec3::ONE,
@@ -87,14 +87,14 @@ pub(super) fn flips(attempt: Attempt<'_>, header: &Header) -> Result<DVec3, Load
 }
 
 /// True if the file gives an anatomical orientation.
-pub(super) fn is_anatomical(header: &Header) -> bool {
-    let space = name(header);
+pub(super) fn is_anatomical(header: &NrrdHeader) -> bool {
+    let space = space_name(header);
     let names = ["right-anterior-superior", "left-anterior-superior", "left-posterior-superior"];
     names.contains(&space.as_str()) || ["ras", "las", "lps"].contains(&space.as_str())
 }
 
 /// Returns millimetres per unit of `space units` or `units`, from the first unit that is a known length.
-pub(super) fn mm_per_unit(header: &Header, field: &str) -> Option<f64> {
+pub(super) fn mm_per_unit(header: &NrrdHeader, field: &str) -> Option<f64> {
     let units = header.get(field).unwrap_or_default();
     let length = |unit: &str| match unit.trim().to_lowercase().as_str() {
         "mm" | "millimeter" | "millimeters" | "millimetre" | "millimetres" => Some(1.0),
@@ -109,7 +109,7 @@ pub(super) fn mm_per_unit(header: &Header, field: &str) -> Option<f64> {
 }
 
 /// True if lengths are counted in voxels, so that the physical scale is unknown.
-pub(super) fn counts_voxels(header: &Header) -> bool {
+pub(super) fn is_in_voxel_units(header: &NrrdHeader) -> bool {
     let is_voxel =
         |unit: &str| matches!(unit.trim().to_lowercase().as_str(), "voxel" | "voxels" | "pixel" | "pixels");
     ["space units", "units"]
@@ -118,7 +118,7 @@ pub(super) fn counts_voxels(header: &Header) -> bool {
 }
 
 /// Returns the name of the space, without its time suffix.
-fn name(header: &Header) -> String {
+fn space_name(header: &NrrdHeader) -> String {
     let space = header.get("space").unwrap_or_default().to_lowercase();
     match space.as_str() {
         "rast" | "last" | "lpst" => space[..3].to_owned(),
@@ -127,9 +127,9 @@ fn name(header: &Header) -> String {
 }
 
 /// Returns the number of components of the file's vectors: 3, 4 with time, or 2 for images.
-fn space_dimension(attempt: Attempt<'_>, header: &Header) -> Result<usize, LoadError> {
+fn space_dimension(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<usize, LoadError> {
     let wrong = |found: &str| {
-        attempt.bad_input(
+        attempt.bad_input_error(
             "space dimension",
             format!(
                 "a space of 3 dimensions, 4 with time, or 2 for a slice, was expected, {} was found",
@@ -154,7 +154,7 @@ fn has_time(space: &str) -> bool {
 }
 
 /// Converts a vector to three dimensions, without time; `None` if its length does not match.
-fn in_space(components: &[f64], space_dimension: usize) -> Option<DVec3> {
+fn spatial_vector(components: &[f64], space_dimension: usize) -> Option<DVec3> {
     match *components {
         [x, y, z] if space_dimension == 3 => Some(DVec3::new(x, y, z)),
         [x, y, z, _] if space_dimension == 4 => Some(DVec3::new(x, y, z)),

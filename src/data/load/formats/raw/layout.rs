@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::super::input::is_gzip;
 use super::super::{Endian, nrrd};
-use super::said::Said;
+use super::name_hints::RawNameHints;
 use super::{RawFormat, name, sidecar};
 use crate::data::VoxelType;
 
@@ -34,7 +34,7 @@ pub struct RawGuess {
     /// True if it is compressed, so that its length carries no information.
     pub is_gzip: bool,
     /// Layout hints in its name.
-    pub said: Said,
+    pub name_hints: RawNameHints,
 }
 
 impl RawLayout {
@@ -45,7 +45,7 @@ impl RawLayout {
     }
 
     /// Converts to the options of the RAW reader.
-    pub fn format(&self) -> RawFormat {
+    pub fn to_format(&self) -> RawFormat {
         RawFormat {
             dims: Some(self.dims),
             voxel_type: Some(self.voxel_type),
@@ -56,7 +56,7 @@ impl RawLayout {
     }
 
     /// Text of a detached NRRD header for a data file in the same folder, which lets every NRRD reader open it.
-    pub fn header(&self, data_file: &str, is_gzip: bool) -> String {
+    pub fn nrrd_header(&self, data_file: &str, is_gzip: bool) -> String {
         let [x, y, z] = self.dims;
         let spacings = self.spacing_mm.map_or(String::new(), |[sx, sy, sz]| {
             format!("spacings: {sx} {sy} {sz}\nunits: \"mm\" \"mm\" \"mm\"\n")
@@ -95,11 +95,11 @@ impl RawLayout {
         let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
         let length = (!is_gzip).then_some(file_bytes);
         let (dims, voxel_type) = guess_from(&name, length);
-        let endian = name::order_of(&name);
-        let said = Said { dims: three_numbers(&name), voxel_type: type_said(&name), endian };
+        let endian = name::byte_order_in_name(&name);
+        let said = RawNameHints { dims: three_numbers(&name), voxel_type: type_in_name(&name), endian };
         let endian = endian.unwrap_or(Endian::Little);
         let layout = Self { dims, voxel_type, spacing_mm: None, endian, offset: 0 };
-        Ok(Some(RawGuess { layout, file_bytes, is_gzip, said }))
+        Ok(Some(RawGuess { layout, file_bytes, is_gzip, name_hints: said }))
     }
 }
 
@@ -121,22 +121,22 @@ const TYPE_WORDS: [(&str, VoxelType); 13] = [
 ];
 
 /// Number types in order of frequency, one for each size.
-const USUAL: [VoxelType; 4] = [VoxelType::U8, VoxelType::U16, VoxelType::F32, VoxelType::F64];
+const COMMON_TYPES: [VoxelType; 4] = [VoxelType::U8, VoxelType::U16, VoxelType::F32, VoxelType::F64];
 
 /// Default dimensions where nothing is known.
-const NO_IDEA: [usize; 3] = [256; 3];
+const DEFAULT_DIMS: [usize; 3] = [256; 3];
 
-fn type_said(name: &str) -> Option<VoxelType> {
+fn type_in_name(name: &str) -> Option<VoxelType> {
     TYPE_WORDS.iter().find(|(word, _)| name.contains(word)).map(|(_, voxel_type)| *voxel_type)
 }
 
 fn guess_from(name: &str, length: Option<u64>) -> ([usize; 3], VoxelType) {
-    let said = type_said(name);
+    let said = type_in_name(name);
     if let Some(dims) = three_numbers(name) {
         // At most 10¹⁵, so that the product cannot overflow.
         let voxels: u64 = dims.iter().map(|&n| n as u64).product();
         let fitting = |t: &VoxelType| length == Some(voxels.saturating_mul(t.bytes() as u64));
-        let voxel_type = said.or_else(|| USUAL.into_iter().find(fitting)).unwrap_or(VoxelType::U8);
+        let voxel_type = said.or_else(|| COMMON_TYPES.into_iter().find(fitting)).unwrap_or(VoxelType::U8);
         return (dims, voxel_type);
     }
     // Equal numbers of voxels along all axes.
@@ -146,8 +146,8 @@ fn guess_from(name: &str, length: Option<u64>) -> ([usize; 3], VoxelType) {
         let length_of_cube = n.checked_pow(3)?.checked_mul(voxel_type.bytes() as u64);
         (n > 0 && length_of_cube == length).then_some(([n as usize; 3], voxel_type))
     };
-    let types = said.map_or(USUAL.to_vec(), |voxel_type| vec![voxel_type]);
-    types.into_iter().find_map(cube).unwrap_or((NO_IDEA, said.unwrap_or(VoxelType::U8)))
+    let types = said.map_or(COMMON_TYPES.to_vec(), |voxel_type| vec![voxel_type]);
+    types.into_iter().find_map(cube).unwrap_or((DEFAULT_DIMS, said.unwrap_or(VoxelType::U8)))
 }
 
 /// Finds three consecutive numbers, each at most a hundred thousand, between separators such as `x` or underscore.
@@ -173,9 +173,9 @@ mod tests {
             ("cube.raw", Some(27), ([3; 3], VoxelType::U8)),
             ("cube.raw", Some(54), ([3; 3], VoxelType::U16)),
             ("cube_float.raw", Some(108), ([3; 3], VoxelType::F32)),
-            ("scan_short.raw", Some(1001), (NO_IDEA, VoxelType::I16)),
-            ("empty", Some(0), (NO_IDEA, VoxelType::U8)),
-            ("999999999x2x2.raw", Some(u64::MAX), (NO_IDEA, VoxelType::U8)),
+            ("scan_short.raw", Some(1001), (DEFAULT_DIMS, VoxelType::I16)),
+            ("empty", Some(0), (DEFAULT_DIMS, VoxelType::U8)),
+            ("999999999x2x2.raw", Some(u64::MAX), (DEFAULT_DIMS, VoxelType::U8)),
         ] {
             assert_eq!(guess_from(name, length), expected, "{name}");
         }
@@ -198,15 +198,15 @@ mod tests {
         };
         assert_eq!(layout.file_bytes(), Some(values.len() as u64));
         let header = folder.path().join("odd name.nhdr");
-        std::fs::write(&header, layout.header("odd name.bin", false)).unwrap();
+        std::fs::write(&header, layout.nrrd_header("odd name.bin", false)).unwrap();
         let control = LoadControl::new();
         let by_header = load(&header, &LoadOptions::default(), &control).unwrap();
-        let options = LoadOptions { raw: layout.format(), ..LoadOptions::default() };
+        let options = LoadOptions { raw: layout.to_format(), ..LoadOptions::default() };
         let by_options = load(&path, &options, &control).unwrap();
         assert_eq!(by_header.samples(), by_options.samples());
         assert_eq!(by_header.spacing_mm(), by_options.spacing_mm());
         let unspaced = RawLayout { spacing_mm: None, ..layout };
-        std::fs::write(&header, unspaced.header("odd name.bin", false)).unwrap();
+        std::fs::write(&header, unspaced.nrrd_header("odd name.bin", false)).unwrap();
         let by_header = load(&header, &LoadOptions::default(), &control).unwrap();
         assert!(by_header.has_unknown_scale(), "nobody has said how large its voxels are");
         assert_eq!(RawLayout::guess(&header).unwrap(), None, "it needs no guess");

@@ -8,14 +8,18 @@ mod image;
 mod legacy;
 mod xml;
 
-use super::reader::Reader;
+use super::reader::FormatReader;
 
 /// Help text for data sets that are not regular grids.
 const RESAMPLE: &str =
     "resample it to an image in ParaView (Filters, Resample To Image) and save that as .vti";
 
-pub(super) const XML: Reader =
-    Reader { name: "VTK image", endings: &[".vti"], recognises: xml::is_xml, load: xml::load };
+pub(super) const XML: FormatReader =
+    FormatReader { name: "VTK image", extensions: &[".vti"], recognises: xml::is_xml, load: xml::load };
 
-pub(super) const LEGACY: Reader =
-    Reader { name: "legacy VTK", endings: &[".vtk"], recognises: legacy::is_legacy, load: legacy::load };
+pub(super) const LEGACY: FormatReader = FormatReader {
+    name: "legacy VTK",
+    extensions: &[".vtk"],
+    recognises: legacy::is_legacy,
+    load: legacy::load,
+};

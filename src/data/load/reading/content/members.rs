@@ -10,7 +10,7 @@ use bzip2::bufread::BzDecoder;
 use flate2::bufread::GzDecoder;
 
 /// Maximum length of zero padding that is searched for another member: the largest block of tapes (LTO, 16 MiB).
-const MOST_PADDING_BYTES: u64 = 16 << 20;
+const MAX_PADDING_BYTES: u64 = 16 << 20;
 
 /// Decoder of a single member.
 pub(crate) trait Member: Read {
@@ -120,7 +120,7 @@ impl<R: BufRead> Lookahead<R> {
     /// Skips zeros, up to the limit; returns true if anything else follows.
     fn skip_padding(&mut self) -> io::Result<bool> {
         let mut skipped = 0;
-        while skipped < MOST_PADDING_BYTES {
+        while skipped < MAX_PADDING_BYTES {
             let block = self.block()?;
             let zeros = block.iter().take_while(|&&byte| byte == 0).count();
             if zeros < block.len() || block.is_empty() {
@@ -179,7 +179,7 @@ mod tests {
     use std::io::{BufReader, Write as _};
 
     use super::*;
-    use crate::data::load::tests::shared::gzip;
+    use crate::data::load::tests::helpers::gzip;
 
     fn bzip2(bytes: &[u8]) -> Vec<u8> {
         let mut encoder = bzip2::write::BzEncoder::new(Vec::new(), bzip2::Compression::fast());

@@ -1,9 +1,9 @@
 //! Segments of a segmentation (PS3.3 section C.8.20): numbers, names and colours.
 
-use crate::data::Labels;
+use crate::data::FileLabelTable;
 
 /// Maximum number of segments read: their numbers have 16 bits.
-pub(crate) const MOST_SEGMENTS: usize = 1 << 16;
+pub(crate) const MAX_SEGMENTS: usize = 1 << 16;
 
 /// Type of a segmentation: meaning of its pixel values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,7 +30,7 @@ impl SegmentationType {
 
 /// Segment as the header describes it.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Segment {
+pub(crate) struct DicomSegment {
     pub(crate) number: Option<u16>,
     pub(crate) label: String,
     /// Colour in `CIELab` as the standard stores it: each component from 0 to 65535.
@@ -38,8 +38,8 @@ pub(crate) struct Segment {
 }
 
 /// Returns names and colours of segments by their numbers.
-pub(crate) fn labels(segments: &[Segment]) -> Labels {
-    let mut labels = Labels::default();
+pub(crate) fn labels_from_segments(segments: &[DicomSegment]) -> FileLabelTable {
+    let mut labels = FileLabelTable::default();
     for segment in segments {
         if let Some(number) = segment.number {
             labels.insert(number.into(), &segment.label, segment.color.map(srgb_from_cielab));
@@ -82,7 +82,7 @@ mod tests {
     use super::*;
 
     /// Encodes L*, a* and b* as a segmentation stores them.
-    fn stored([lightness, a, b]: [f64; 3]) -> [u16; 3] {
+    fn encode_cielab([lightness, a, b]: [f64; 3]) -> [u16; 3] {
         [lightness / 100.0, (a + 128.0) / 255.0, (b + 128.0) / 255.0]
             .map(|part| (part * 65535.0).round() as u16)
     }
@@ -98,7 +98,7 @@ mod tests {
             ([29.57, 68.30, -112.03], [0.0, 0.0, 1.0]),
             ([53.39, 0.0, 0.0], [0.5, 0.5, 0.5]),
         ] {
-            let found = srgb_from_cielab(stored(lab));
+            let found = srgb_from_cielab(encode_cielab(lab));
             // The figures above have four digits, and sRGB is steep in dark colours.
             let furthest = found.iter().zip(rgb).map(|(found, right): (&f32, f32)| (found - right).abs());
             assert!(furthest.fold(0.0, f32::max) < 0.02, "{lab:?}: {found:?}, {rgb:?} expected");
@@ -107,9 +107,9 @@ mod tests {
 
     #[test]
     fn segments_without_numbers_have_no_labels() {
-        let segment = Segment { label: "Liver".to_owned(), ..Segment::default() };
-        assert!(labels(std::slice::from_ref(&segment)).is_empty());
-        let labels = labels(&[Segment { number: Some(3), ..segment }]);
+        let segment = DicomSegment { label: "Liver".to_owned(), ..DicomSegment::default() };
+        assert!(labels_from_segments(std::slice::from_ref(&segment)).is_empty());
+        let labels = labels_from_segments(&[DicomSegment { number: Some(3), ..segment }]);
         assert_eq!(labels.get(3).map(|label| (label.name.as_str(), label.color)), Some(("Liver", None)));
     }
 }

@@ -62,8 +62,8 @@ fn hex(text: &str) -> Vec<u8> {
 }
 
 /// A file with images of 5 x 4 pixels.
-fn file(syntax: &'static str, is_signed: bool, fragments: &[&[u8]]) -> File {
-    File::new(syntax).size(5, 4).bits(16, 16, is_signed).fragments(fragments)
+fn file(syntax: &'static str, is_signed: bool, fragments: &[&[u8]]) -> DicomFileBuilder {
+    DicomFileBuilder::new(syntax).size(5, 4).bits(16, 16, is_signed).fragments(fragments)
 }
 
 /// Returns the pixels of [`LOSSLESS`] and [`LS`].
@@ -114,13 +114,13 @@ fn colours_are_unpacked() {
         .short(tags::SAMPLES, 3)
         .with(|set| set.text(tags::PHOTOMETRIC, *b"CS", "YBR_RCT"));
     for (component, add) in [(0, 0), (1, 5), (2, 9)] {
-        let choice = Choice { component: Some(component), ..Choice::default() };
+        let choice = VolumeChoice { component: Some(component), ..VolumeChoice::default() };
         let volume = colors.load_with(choice).unwrap();
         assert_eq!(volume.samples(), &Samples::U8((0..20).map(|n| n * 10 + 20 + add).collect()));
     }
     for (component, (picture, add)) in COLORS_LS.into_iter().zip([0, 5, 9]).enumerate() {
         let colors = file(JPEG_LS, false, &[&[], &hex(picture)]).bits(8, 8, false).short(tags::SAMPLES, 3);
-        let choice = Choice { component: Some(component), ..Choice::default() };
+        let choice = VolumeChoice { component: Some(component), ..VolumeChoice::default() };
         let volume = colors.with(|set| set.text(tags::PHOTOMETRIC, *b"CS", "RGB")).load_with(choice).unwrap();
         assert_eq!(volume.samples(), &Samples::U8((0..20).map(|n| n * 10 + 20 + add).collect()));
     }
@@ -152,7 +152,7 @@ fn runs_are_unpacked() {
     let mut packed: Vec<u8> = packed.into_iter().flat_map(u32::to_le_bytes).collect();
     // High bytes all 1; low bytes 2 2 2 3 4 5.
     packed.extend([251, 1, 254, 2, 2, 3, 4, 5]);
-    let volume = File::new(RLE).fragments(&[&[], &packed]).load().unwrap();
+    let volume = DicomFileBuilder::new(RLE).fragments(&[&[], &packed]).load().unwrap();
     assert_eq!(volume.samples(), &Samples::U16(vec![258, 258, 258, 259, 260, 261]));
 }
 

@@ -2,7 +2,7 @@
 
 /// Builder of a header and data unit.
 #[derive(Clone)]
-pub(super) struct Unit {
+pub(super) struct TestUnit {
     cards: Vec<String>,
     data: Vec<u8>,
 }
@@ -13,7 +13,7 @@ fn filled(mut bytes: Vec<u8>, with: u8) -> Vec<u8> {
     bytes
 }
 
-impl Unit {
+impl TestUnit {
     /// Makes the primary unit of a file: an array of `bits` bits per pixel, fastest axis first.
     pub(super) fn primary(bits: i32, axes: &[u64], data: Vec<u8>) -> Self {
         Self::new("SIMPLE  =                    T", bits, axes, data)
@@ -51,12 +51,12 @@ impl Unit {
     }
 
     /// Returns the header without its `END` card.
-    pub(super) fn open_header(&self) -> Vec<u8> {
+    pub(super) fn header_without_end(&self) -> Vec<u8> {
         self.cards.iter().flat_map(|card| format!("{card:<80}").into_bytes()).collect()
     }
 
     pub(super) fn bytes(&self) -> Vec<u8> {
         let end = format!("{:<80}", "END").into_bytes();
-        [filled([self.open_header(), end].concat(), b' '), filled(self.data.clone(), 0)].concat()
+        [filled([self.header_without_end(), end].concat(), b' '), filled(self.data.clone(), 0)].concat()
     }
 }

@@ -11,8 +11,8 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
-use crate::data::load::tests::shared::{assert_refused, gzip, load_path as load_path_as};
-use crate::data::load::{Choice, LoadError, LoadErrorKind};
+use crate::data::load::tests::helpers::{assert_refused, gzip, load_path as load_path_as};
+use crate::data::load::{LoadError, LoadErrorKind, VolumeChoice};
 use crate::data::{Samples, Volume};
 
 /// Header of a 2 x 2 x 2 volume of bytes, without its data.
@@ -39,7 +39,7 @@ fn write(folder: &TempDir, name: &str, header: &str, data: &[u8]) -> PathBuf {
 }
 
 fn load_path(path: &Path) -> Result<Volume, LoadError> {
-    load_path_as(path, Choice::default())
+    load_path_as(path, VolumeChoice::default())
 }
 
 /// Loads an attached file: `header`, an empty line, `data`.

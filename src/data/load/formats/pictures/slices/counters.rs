@@ -55,8 +55,8 @@ const CHANNELS: [&str; 17] = [
 const SEPARATORS: [char; 8] = [' ', '_', '-', '.', '=', '#', '(', '['];
 
 /// Meaning of each number of a name, by the text before it.
-pub(super) fn counters<'a>(texts: impl IntoIterator<Item = &'a str>) -> Vec<NameCounter> {
-    let words: Vec<Option<String>> = texts.into_iter().map(word).collect();
+pub(super) fn name_counters<'a>(texts: impl IntoIterator<Item = &'a str>) -> Vec<NameCounter> {
+    let words: Vec<Option<String>> = texts.into_iter().map(counter_word).collect();
     let has = |word: &str| words.iter().flatten().any(|other| other == word);
     let (has_wavelengths, has_channels) = (has("w"), has("ch"));
     let counter = |word: &Option<String>| match word.as_deref() {
@@ -64,12 +64,12 @@ pub(super) fn counters<'a>(texts: impl IntoIterator<Item = &'a str>) -> Vec<Name
         // Beside wavelengths `s` is a site, beside channels `c` a column of wells.
         Some("s") if has_wavelengths => NameCounter::Place,
         Some("c") if has_channels => NameCounter::Place,
-        Some(word) => known(word).unwrap_or(NameCounter::Place),
+        Some(word) => counter_of_word(word).unwrap_or(NameCounter::Place),
     };
     words.iter().map(counter).collect()
 }
 
-fn known(word: &str) -> Option<NameCounter> {
+fn counter_of_word(word: &str) -> Option<NameCounter> {
     if SLICES.contains(&word) {
         Some(NameCounter::Slice)
     } else if NUMBERS.contains(&word) {
@@ -82,12 +82,12 @@ fn known(word: &str) -> Option<NameCounter> {
 }
 
 /// Word that marks a number, in lower case: the letters directly before it, or, across a separator, a known word.
-fn word(text: &str) -> Option<String> {
+fn counter_word(text: &str) -> Option<String> {
     let trimmed = text.trim_end_matches(SEPARATORS);
     let start = trimmed.char_indices().rev().take_while(|(_, c)| c.is_alphabetic()).last();
     let letters = &trimmed[start.map_or(trimmed.len(), |(at, _)| at)..];
     let whole = letters.to_lowercase();
-    if known(&whole).is_some() {
+    if counter_of_word(&whole).is_some() {
         return Some(whole);
     }
     // `brainT01`: the capital letters at the end.
@@ -95,7 +95,7 @@ fn word(text: &str) -> Option<String> {
     let last = letters.char_indices().rev().take_while(|(_, c)| c.is_uppercase()).last();
     let last = last.map_or("", |(at, _)| &letters[at..]).to_lowercase();
     for tail in [capitals.to_lowercase(), last] {
-        if known(&tail).is_some() {
+        if counter_of_word(&tail).is_some() {
             return Some(tail);
         }
     }
@@ -138,10 +138,10 @@ mod tests {
             ("Series", Place),
             ("XY", Place),
         ] {
-            assert_eq!(counters([text]), [expected], "{text:?}");
+            assert_eq!(name_counters([text]), [expected], "{text:?}");
         }
-        assert_eq!(counters(["exp_w", "_s", "_t"]), [Channel, Place, Time]);
-        assert_eq!(counters(["r", "c", "f", "p", "-ch"]), [Place, Place, Place, Number, Channel]);
+        assert_eq!(name_counters(["exp_w", "_s", "_t"]), [Channel, Place, Time]);
+        assert_eq!(name_counters(["r", "c", "f", "p", "-ch"]), [Place, Place, Place, Number, Channel]);
     }
 
     #[test]

@@ -3,32 +3,32 @@
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
-use super::counters::{NameCounter, counters, slice_column};
-use super::picture::Kind;
+use super::counters::{NameCounter, name_counters, slice_column};
+use super::picture::SliceFormat;
 
 /// Files that are slices of one volume, as indices into the list of all.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) struct Group {
+pub(super) struct SliceGroup {
     /// Common part of their names, with `#` in place of the slice number.
     pub(super) name: String,
-    pub(super) kind: Kind,
+    pub(super) kind: SliceFormat,
     pub(super) files: Vec<usize>,
     /// Remark about gaps in the numbering.
     pub(super) gap: Option<String>,
 }
 
 /// File name split into texts and the digits between them.
-struct Pieces {
+struct NamePieces {
     texts: Vec<String>,
     digits: Vec<String>,
     /// Meaning of each of the numbers.
     counters: Vec<NameCounter>,
 }
 
-impl Pieces {
-    fn of(path: &Path) -> Self {
+impl NamePieces {
+    fn parse(path: &Path) -> Self {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let name = without_mark(&name);
+        let name = strip_uuid(&name);
         let (mut texts, mut digits) = (vec![String::new()], Vec::new());
         let mut was_digit = false;
         for c in name.chars() {
@@ -43,7 +43,7 @@ impl Pieces {
             }
             was_digit = is_digit;
         }
-        let counters = counters(texts.iter().take(digits.len()).map(String::as_str));
+        let counters = name_counters(texts.iter().take(digits.len()).map(String::as_str));
         let texts = texts.iter().map(|text| text.to_lowercase()).collect();
         Self { texts, digits, counters }
     }
@@ -61,7 +61,7 @@ impl Pieces {
 
 /// Removes a UUID from a name (32 hexadecimal digits, RFC 9562, 4), by which some databases keep files apart: it
 /// carries no order.
-fn without_mark(name: &str) -> String {
+fn strip_uuid(name: &str) -> String {
     const GROUPS: [usize; 5] = [8, 4, 4, 4, 12];
     const MARK_BYTES: usize = 36;
     let is_mark = |mark: &str| {
@@ -77,14 +77,15 @@ fn without_mark(name: &str) -> String {
 }
 
 /// Name with `#` in place of all numbers, which the slices of a volume have in common.
-pub(super) fn pattern(path: &Path) -> String {
-    Pieces::of(path).name(|_| true)
+pub(super) fn name_pattern(path: &Path) -> String {
+    NamePieces::parse(path).name(|_| true)
 }
 
 /// Groups pictures, in natural order: members of a group differ in the number that counts slices.
-pub(super) fn groups<'a>(files: impl IntoIterator<Item = (&'a Path, Kind)>) -> Vec<Group> {
-    let files: Vec<(Pieces, Kind)> = files.into_iter().map(|(path, kind)| (Pieces::of(path), kind)).collect();
-    let alike = gathered((0..files.len()).map(|at| {
+pub(super) fn group_slices<'a>(files: impl IntoIterator<Item = (&'a Path, SliceFormat)>) -> Vec<SliceGroup> {
+    let files: Vec<(NamePieces, SliceFormat)> =
+        files.into_iter().map(|(path, kind)| (NamePieces::parse(path), kind)).collect();
+    let alike = group_by_key((0..files.len()).map(|at| {
         let (pieces, kind) = &files[at];
         ((*kind, pieces.name(|_| true)), at)
     }));
@@ -98,10 +99,10 @@ pub(super) fn groups<'a>(files: impl IntoIterator<Item = (&'a Path, Kind)>) -> V
         let counters = members.first().map_or(&[][..], |&member| &files[member].0.counters);
         let Some(counted) = slice_column(&varying, counters) else {
             let name = members.first().map_or(String::new(), |&member| files[member].0.name(|_| false));
-            groups.push(Group { name, kind, files: members, gap: None });
+            groups.push(SliceGroup { name, kind, files: members, gap: None });
             continue;
         };
-        let parts = gathered(members.iter().map(|&member| {
+        let parts = group_by_key(members.iter().map(|&member| {
             let others = varying.iter().filter(|&&column| column != counted);
             let key: Vec<&str> = others.map(|&column| digits(member)[column].as_str()).collect();
             (key, member)
@@ -123,15 +124,15 @@ pub(super) fn groups<'a>(files: impl IntoIterator<Item = (&'a Path, Kind)>) -> V
         for (counts, part) in parts {
             let name = files[part[0]].0.name(|column| counts.contains(&column));
             let numbers = part.iter().map(|&member| digits(member)[counted].parse().ok());
-            let gap = if counts.len() == 1 { gap(&numbers.collect::<Vec<_>>()) } else { None };
-            groups.push(Group { name, kind, files: part, gap });
+            let gap = if counts.len() == 1 { gap_remark(&numbers.collect::<Vec<_>>()) } else { None };
+            groups.push(SliceGroup { name, kind, files: part, gap });
         }
     }
     groups
 }
 
 /// Groups items by key, in the order in which the keys first occur.
-fn gathered<K: Clone + Eq + std::hash::Hash>(
+fn group_by_key<K: Clone + Eq + std::hash::Hash>(
     things: impl IntoIterator<Item = (K, usize)>,
 ) -> Vec<(K, Vec<usize>)> {
     let mut places: HashMap<K, usize> = HashMap::new();
@@ -147,7 +148,7 @@ fn gathered<K: Clone + Eq + std::hash::Hash>(
 }
 
 /// Remark about missing numbers in a sequence of equal steps.
-fn gap(numbers: &[Option<u64>]) -> Option<String> {
+fn gap_remark(numbers: &[Option<u64>]) -> Option<String> {
     let steps = numbers.windows(2).filter_map(|pair| {
         let (before, after) = (pair[0]?, pair[1]?);
         Some((before, after, after.checked_sub(before)?))
@@ -169,8 +170,8 @@ mod tests {
     use super::*;
 
     fn grouped(names: &[&str]) -> Vec<(String, Vec<usize>, bool)> {
-        let kind = |name: &str| if name.ends_with("jpg") { Kind::Jpeg } else { Kind::Png };
-        let groups = groups(names.iter().map(|name| (Path::new(*name), kind(name))));
+        let kind = |name: &str| if name.ends_with("jpg") { SliceFormat::Jpeg } else { SliceFormat::Png };
+        let groups = group_slices(names.iter().map(|name| (Path::new(*name), kind(name))));
         groups.into_iter().map(|group| (group.name, group.files, group.gap.is_some())).collect()
     }
 
@@ -218,10 +219,10 @@ mod tests {
         let names: Vec<String> = [("z1", "0A"), ("z2", "9F"), ("z3", "B7")]
             .map(|(slice, mark)| format!("p_{slice}_w1{}-1111-2222-3333-444455556666.tif", mark.repeat(4)))
             .to_vec();
-        let found = groups(names.iter().map(|name| (Path::new(name.as_str()), Kind::Tiff)));
+        let found = group_slices(names.iter().map(|name| (Path::new(name.as_str()), SliceFormat::Tiff)));
         assert_eq!((found.len(), found[0].name.as_str()), (1, "p_z#_w1.tif"));
         for name in ["slice-1111-2222-3333-1.png", "é-1.png", "x"] {
-            assert_eq!(without_mark(name), name);
+            assert_eq!(strip_uuid(name), name);
         }
     }
 
@@ -264,7 +265,8 @@ mod tests {
                         names = names.iter().flat_map(numbered).collect();
                     }
                     let names: Vec<String> = names.into_iter().map(|name| name + ".tif").collect();
-                    let groups = groups(names.iter().map(|name| (Path::new(name.as_str()), Kind::Tiff)));
+                    let groups =
+                        group_slices(names.iter().map(|name| (Path::new(name.as_str()), SliceFormat::Tiff)));
                     let (_, slices) = set[0];
                     let others: usize = set[1..].iter().map(|&(_, count)| count).product();
                     assert_eq!(groups.len(), others, "{names:?}");
@@ -281,11 +283,12 @@ mod tests {
 
     #[test]
     fn gaps_are_found_and_equal_steps_are_none() {
-        let numbers = |numbers: &[u64]| gap(&numbers.iter().map(|&number| Some(number)).collect::<Vec<_>>());
+        let numbers =
+            |numbers: &[u64]| gap_remark(&numbers.iter().map(|&number| Some(number)).collect::<Vec<_>>());
         assert_eq!(numbers(&[1, 2, 3]), None);
         assert_eq!(numbers(&[10, 20, 30]), None);
         assert_eq!(numbers(&[7]), None);
         assert!(numbers(&[1, 2, 5, 6, 9]).unwrap().contains("2 and 5, and at 1 more places"));
-        assert_eq!(gap(&[Some(1), None, Some(9)]), None, "a number that is too long for a count");
+        assert_eq!(gap_remark(&[Some(1), None, Some(9)]), None, "a number that is too long for a count");
     }
 }

@@ -5,17 +5,17 @@ use std::path::Path;
 use image::{DynamicImage, ImageFormat};
 use tempfile::TempDir;
 
-use crate::data::load::tests::shared::assert_refused;
-use crate::data::load::{Choice, LoadControl, LoadError, LoadErrorKind, LoadOptions, load};
+use crate::data::load::tests::helpers::assert_refused;
+use crate::data::load::{LoadControl, LoadError, LoadErrorKind, LoadOptions, VolumeChoice, load};
 use crate::data::{Samples, Volume};
 
-fn load_with(path: &Path, choice: Choice) -> Result<Volume, LoadError> {
+fn load_with(path: &Path, choice: VolumeChoice) -> Result<Volume, LoadError> {
     let options = LoadOptions { memory_budget_bytes: 1 << 16, choice, ..LoadOptions::default() };
     load(path, &options, &LoadControl::new())
 }
 
 fn load_path(path: &Path) -> Result<Volume, LoadError> {
-    load_with(path, Choice::default())
+    load_with(path, VolumeChoice::default())
 }
 
 fn grey(width: u32, values: &[u8]) -> DynamicImage {
@@ -67,7 +67,7 @@ fn of_a_folder_the_files_that_are_meant_are_read() {
     ]);
     let meant = |names: &[&str]| {
         let among = names.iter().map(|name| stack.path().join(name)).collect();
-        let options = LoadOptions { among: Some(among), ..LoadOptions::default() };
+        let options = LoadOptions { only_files: Some(among), ..LoadOptions::default() };
         load(stack.path(), &options, &LoadControl::new())
     };
     assert_eq!(*meant(&["3.png", "2.png"]).unwrap().samples(), Samples::U8(vec![3, 4, 5, 6]));
@@ -92,9 +92,10 @@ fn all_kinds_of_pictures_also_single() {
     let volume = load_path(stack.path()).unwrap();
     assert_eq!(*volume.samples(), Samples::U8(vec![54, 19, 54, 19]));
     assert!(volume.remarks()[0].contains("luminance"));
-    let blue = load_with(stack.path(), Choice { component: Some(2), ..Choice::default() }).unwrap();
+    let blue =
+        load_with(stack.path(), VolumeChoice { component: Some(2), ..VolumeChoice::default() }).unwrap();
     assert_eq!(*blue.samples(), Samples::U8(vec![0, 30, 0, 30]));
-    let none = load_with(stack.path(), Choice { component: Some(3), ..Choice::default() });
+    let none = load_with(stack.path(), VolumeChoice { component: Some(3), ..VolumeChoice::default() });
     assert_refused(none, LoadErrorKind::BadInput, &["component 3", "its 3"]);
 }
 
@@ -121,7 +122,7 @@ fn several_groups_are_series_and_strays_are_left_out() {
         ("b3.png", pixel(5)),
     ]);
     assert_refused(load_path(two.path()), LoadErrorKind::BadInput, &["2 series", "1 \"b#.png\" (1 x 1 x 3)"]);
-    let choice = Choice { series: Some("b#.png".to_owned()), ..Choice::default() };
+    let choice = VolumeChoice { series: Some("b#.png".to_owned()), ..VolumeChoice::default() };
     let volume = load_with(two.path(), choice).unwrap();
     assert_eq!((volume.samples(), volume.name()), (&Samples::U8(vec![3, 4, 5]), "b#.png"));
     let stray = folder(&[
@@ -181,7 +182,7 @@ fn slices_come_before_channels_in_names() {
     let listed = ["2 series", "0 \"series001_z#_ch00.png\" (2 x 1 x 8)", "1 \"series001_z#_ch01.png\""];
     assert_refused(load_path(stacks.path()), LoadErrorKind::BadInput, &listed);
     for channel in 0..2 {
-        let choice = Choice { series: Some(channel.to_string()), ..Choice::default() };
+        let choice = VolumeChoice { series: Some(channel.to_string()), ..VolumeChoice::default() };
         let volume = load_with(stacks.path(), choice).unwrap();
         let expected: Vec<u8> = (0..8).flat_map(|z| [z + 100 * channel, z]).collect();
         assert_eq!((volume.dims(), volume.samples()), ([2, 1, 8], &Samples::U8(expected)));
@@ -218,7 +219,8 @@ fn a_slice_that_is_no_picture_is_said() {
         ("b2.png", grey(1, &[4])),
     ]);
     std::fs::write(series.path().join("b3.png"), b"garbage").unwrap();
-    let choose = |series_key: &str| Choice { series: Some(series_key.to_owned()), ..Choice::default() };
+    let choose =
+        |series_key: &str| VolumeChoice { series: Some(series_key.to_owned()), ..VolumeChoice::default() };
     assert!(load_with(series.path(), choose("0")).unwrap().remarks().is_empty());
     assert!(load_with(series.path(), choose("1")).unwrap().remarks()[0].contains("b3.png"));
 }

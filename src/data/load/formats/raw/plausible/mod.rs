@@ -5,12 +5,12 @@
 //! suffice, whatever the size of the file. Offsets and lengths are in bytes of the uncompressed file, distances
 //! between neighbours in voxels.
 
-mod codes;
+mod autocorrelation;
 mod evidence;
-mod lags;
+mod number_candidates;
 mod numbers;
+mod sample_blocks;
 mod shapes;
-mod spots;
 #[cfg(test)]
 mod tests;
 
@@ -18,65 +18,69 @@ use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::bytes::RawBytes;
-use super::said::Said;
-use codes::Code;
-pub use evidence::{Evidence, Proposal};
-use lags::Lags;
-pub(super) use numbers::each_value;
-use shapes::{Shape, Size};
-use spots::Spots;
+use super::name_hints::RawNameHints;
+use autocorrelation::LagDifferences;
+pub use evidence::{LayoutEvidence, LayoutProposal};
+use number_candidates::NumberCandidate;
+pub(super) use numbers::for_each_value;
+use sample_blocks::SampleBlocks;
+use shapes::{RawFileLength, ScoredShape};
 
 /// Maximum number of proposals.
-const MOST: usize = 8;
+const MAX_PROPOSALS: usize = 8;
 
 /// Number of interpretations that are examined more closely: those ranked lower are never right.
-const CODES: usize = 4;
+const MAX_CANDIDATES: usize = 4;
 
 /// Maximum cost of an interpretation, relative to the best.
-const HOPELESS: f64 = 1.6;
+const MAX_RELATIVE_COST: f64 = 1.6;
 
 /// Proposes layouts of a file, most likely first; empty if `stop` was set meanwhile.
 ///
 /// # Errors
 /// When the file cannot be read.
-pub fn proposals(bytes: &mut RawBytes, said: Said, stop: &AtomicBool) -> io::Result<Vec<Proposal>> {
+pub fn propose_layouts(
+    bytes: &mut RawBytes,
+    said: RawNameHints,
+    stop: &AtomicBool,
+) -> io::Result<Vec<LayoutProposal>> {
     if bytes.is_empty() {
         return Ok(Vec::new());
     }
-    let spots = Spots::read(bytes)?;
-    let codes = codes::ranked(&spots, said);
-    let mut found: Vec<Proposal> = Vec::new();
+    let spots = SampleBlocks::read(bytes)?;
+    let codes = number_candidates::rank_candidates(&spots, said);
+    let mut found: Vec<LayoutProposal> = Vec::new();
     let best = codes.first().map_or(0.0, |code| code.cost);
-    for code in codes.iter().take(CODES).filter(|code| code.cost <= HOPELESS * best) {
+    for code in codes.iter().take(MAX_CANDIDATES).filter(|code| code.cost <= MAX_RELATIVE_COST * best) {
         if stop.load(Ordering::Relaxed) {
             return Ok(Vec::new());
         }
-        let size = Size::of(bytes, code);
+        let size = RawFileLength::new(bytes, code);
         // Unaligned numbers count only where they are by far the best.
-        if found.is_empty() || size.is_usual() {
-            found.extend(of_code(bytes, &spots, code, said, stop)?);
+        if found.is_empty() || size.fits_usual_header() {
+            found.extend(proposals_for_candidate(bytes, &spots, code, said, stop)?);
         }
     }
     found.sort_by(|a, b| b.evidence.score.total_cmp(&a.evidence.score));
     found.dedup_by(|later, first| later.layout == first.layout);
-    found.truncate(MOST);
-    evidence::judge(&mut found);
+    found.truncate(MAX_PROPOSALS);
+    evidence::mark_clear(&mut found);
     Ok(found)
 }
 
 /// Most likely shapes of a file for one interpretation.
-fn of_code(
+fn proposals_for_candidate(
     bytes: &mut RawBytes,
-    spots: &Spots,
-    code: &Code,
-    said: Said,
+    spots: &SampleBlocks,
+    code: &NumberCandidate,
+    said: RawNameHints,
     stop: &AtomicBool,
-) -> io::Result<Vec<Proposal>> {
-    let size = Size::of(bytes, code);
-    let lags = Lags::of(bytes, spots, code)?;
+) -> io::Result<Vec<LayoutProposal>> {
+    let size = RawFileLength::new(bytes, code);
+    let lags = LagDifferences::new(bytes, spots, code)?;
     let rows = shapes::rows(&size, &lags, said);
-    let agreeing = shapes::agreeing(&lags, &rows);
-    let mut shapes: Vec<Shape> = Vec::new();
+    let agreeing = shapes::agreeing_slice_lengths(&lags, &rows);
+    let mut shapes: Vec<ScoredShape> = Vec::new();
     for row in rows {
         shapes.extend(shapes::slices(bytes, &size, &lags, row, &agreeing, said)?);
         if stop.load(Ordering::Relaxed) {
@@ -84,6 +88,6 @@ fn of_code(
         }
     }
     shapes.sort_by(|a, b| b.score.total_cmp(&a.score));
-    shapes.truncate(MOST);
-    Ok(shapes.iter().flat_map(|shape| evidence::of(code, shape, said)).collect())
+    shapes.truncate(MAX_PROPOSALS);
+    Ok(shapes.iter().flat_map(|shape| evidence::proposals_from_shape(code, shape, said)).collect())
 }

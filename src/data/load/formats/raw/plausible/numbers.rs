@@ -37,11 +37,6 @@ macro_rules! with_numbers {
 pub(super) use with_numbers;
 
 /// Calls `give` with each number in turn.
-pub(in crate::data::load::formats::raw) fn each_value(
-    bytes: &[u8],
-    voxel_type: VoxelType,
-    endian: Endian,
-    mut give: impl FnMut(f64),
-) {
+pub(crate) fn for_each_value(bytes: &[u8], voxel_type: VoxelType, endian: Endian, mut give: impl FnMut(f64)) {
     with_numbers!(bytes, voxel_type, endian, numbers => numbers.for_each(&mut give));
 }

@@ -4,103 +4,103 @@ use std::collections::HashMap;
 use std::io;
 
 use super::super::bytes::RawBytes;
-use super::super::said::Said;
-use super::codes::Code;
-use super::lags::{Dip, Lags, SHORTEST};
+use super::super::name_hints::RawNameHints;
+use super::autocorrelation::{LagDifferences, LagDip, MIN_ROW};
+use super::number_candidates::NumberCandidate;
 
 /// Lengths of headers in use, in bytes: none, the smallest of MRC and others, Analyze and `NIfTI`, whole disk blocks.
 pub(super) const HEADERS: [u64; 14] = [0, 16, 32, 64, 80, 128, 256, 348, 352, 512, 1024, 2048, 4096, 8192];
 
 /// Maximum length of a header that is guessed where voxels do not fill the file, in bytes.
-const LONGEST_HEADER: u64 = 64 << 10;
+const MAX_HEADER: u64 = 64 << 10;
 
 /// Maximum edge length that is guessed, in voxels.
-const LONGEST: usize = 1 << 16;
+const MAX_EDGE: usize = 1 << 16;
 
 /// Number of row lengths that are examined more closely.
-const ROWS: usize = 8;
+const MAX_ROW_CANDIDATES: usize = 8;
 
 /// Maximum deficit of a row's score against the best: agreeing slices cannot make up for more.
-const HOPELESS: f64 = 1.2;
+const MAX_SCORE_DEFICIT: f64 = 1.2;
 
 /// Number of slice heights that are examined for each row length.
-const SLICES: usize = 32;
+const MAX_SLICE_CANDIDATES: usize = 32;
 
 /// Length of a file of numbers of one interpretation.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Size {
+pub(super) struct RawFileLength {
     bytes: u64,
     voxel: u64,
     phase: u64,
 }
 
-impl Size {
-    pub(super) fn of(bytes: &RawBytes, code: &Code) -> Self {
+impl RawFileLength {
+    pub(super) fn new(bytes: &RawBytes, code: &NumberCandidate) -> Self {
         Self { bytes: bytes.length(), voxel: code.voxel_type.bytes() as u64, phase: code.phase as u64 }
     }
 
     /// Number of voxels after a header; `None` if it is not an integer.
-    fn after(&self, header: u64) -> Option<u64> {
+    fn voxels_after(&self, header: u64) -> Option<u64> {
         let rest = self.bytes.checked_sub(header)?;
         (header % self.voxel == self.phase && rest.is_multiple_of(self.voxel)).then_some(rest / self.voxel)
     }
 
     /// Returns true if a header of usual length leaves an integer number of voxels.
-    pub(super) fn is_usual(&self) -> bool {
-        self.usual().next().is_some()
+    pub(super) fn fits_usual_header(&self) -> bool {
+        self.usual_headers().next().is_some()
     }
 
     /// Usual headers that leave an integer number of voxels, with that number.
-    fn usual(&self) -> impl Iterator<Item = (u64, u64)> {
-        HEADERS.into_iter().filter_map(|header| Some((header, self.after(header)?)))
+    fn usual_headers(&self) -> impl Iterator<Item = (u64, u64)> {
+        HEADERS.into_iter().filter_map(|header| Some((header, self.voxels_after(header)?)))
     }
 }
 
 /// Candidate length of rows, in voxels.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Row {
+pub(super) struct RowCandidate {
     length: usize,
-    dip: Dip,
+    dip: LagDip,
     score: f64,
 }
 
 /// Candidate shape before its slices are scored.
 #[derive(Debug, Clone, Copy)]
-struct Tried {
+struct ShapeCandidate {
     dims: [usize; 3],
     header: u64,
     /// Score of the shape alone, before its voxels are examined.
     prior: f64,
 }
 
-impl Tried {
-    fn new(dims: [usize; 3], header: u64, said: Said) -> Self {
-        Self { dims, header, prior: prior(dims, header, said) }
+impl ShapeCandidate {
+    fn new(dims: [usize; 3], header: u64, said: RawNameHints) -> Self {
+        Self { dims, header, prior: shape_prior(dims, header, said) }
     }
 }
 
 /// Scored shape, with the agreement of neighbouring rows and slices.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Shape {
+pub(super) struct ScoredShape {
     pub(super) dims: [usize; 3],
     pub(super) header: u64,
-    pub(super) row: Dip,
-    pub(super) slice: Dip,
+    pub(super) row: LagDip,
+    pub(super) slice: LagDip,
     /// Mean difference of neighbours along x.
-    pub(super) across: f64,
+    pub(super) neighbour_difference: f64,
     /// Mean difference of unrelated voxels.
-    pub(super) unlike: f64,
+    pub(super) unrelated_difference: f64,
     pub(super) score: f64,
 }
 
 /// Weight of a dip in the score: its depth, reduced where it may be chance.
-fn weight(dip: Dip) -> f64 {
+fn dip_weight(dip: LagDip) -> f64 {
     // Four standard deviations rule out chance, whatever the number of lags that were tried.
     dip.depth * (dip.sigmas / 4.0).clamp(0.0, 1.0)
 }
 
 /// Penalty for an unusual edge length.
-fn odd(edge: usize) -> f64 {
+fn edge_penalty(edge: usize) -> f64 {
     if edge.is_power_of_two() || edge.is_multiple_of(128) {
         0.0
     } else if edge.is_multiple_of(16) || edge.is_multiple_of(50) {
@@ -113,35 +113,36 @@ fn odd(edge: usize) -> f64 {
 }
 
 /// Candidate row lengths, most likely first.
-pub(super) fn rows(size: &Size, lags: &Lags, said: Said) -> Vec<Row> {
+pub(super) fn rows(size: &RawFileLength, lags: &LagDifferences, said: RawNameHints) -> Vec<RowCandidate> {
     let differences = &lags.differences;
     let depth = |length: usize| {
         let around = 0.5 * (differences.get(length - 1)? + differences.get(length + 1)?);
         (around > 0.0).then(|| 1.0 - differences[length] / around)
     };
     // By the autocorrelation, and by divisibility of the file's length.
-    let mut promising: Vec<(usize, f64)> = (SHORTEST..differences.len().saturating_sub(1))
+    let mut promising: Vec<(usize, f64)> = (MIN_ROW..differences.len().saturating_sub(1))
         .filter_map(|length| Some((length, depth(length)?)))
         .map(|(length, depth)| {
-            let fits = size.usual().any(|(_, voxels)| voxels.is_multiple_of(length as u64));
-            let closeness = 1.0 - differences[length] / lags.unlike.max(f64::MIN_POSITIVE);
+            let fits = size.usual_headers().any(|(_, voxels)| voxels.is_multiple_of(length as u64));
+            let closeness = 1.0 - differences[length] / lags.unrelated.max(f64::MIN_POSITIVE);
             (length, depth + 0.3 * closeness.max(0.0) + if fits { 0.1 } else { 0.0 })
         })
         .collect();
     promising.sort_by(|a, b| b.1.total_cmp(&a.1));
-    promising.truncate(3 * ROWS);
+    promising.truncate(3 * MAX_ROW_CANDIDATES);
     let mut lengths: Vec<usize> = promising.into_iter().map(|(length, _)| length).collect();
     lengths.extend(said.dims.map(|dims| dims[0]));
-    lengths.extend(size.usual().filter_map(|(_, voxels)| cube(voxels)));
+    lengths.extend(size.usual_headers().filter_map(|(_, voxels)| cube_edge(voxels)));
     lengths.sort_unstable();
     lengths.dedup();
-    let mut rows: Vec<Row> = lengths
+    let mut rows: Vec<RowCandidate> = lengths
         .into_iter()
-        .filter(|length| (1..=LONGEST).contains(length))
+        .filter(|length| (1..=MAX_EDGE).contains(length))
         .map(|length| {
-            let dip = lags.row(length);
-            let nearness = (lags.unlike / dip.difference.max(1e-6 * lags.unlike).max(f64::MIN_POSITIVE)).ln();
-            Row { length, dip, score: weight(dip) + 0.2 * nearness.clamp(-1.0, 2.5) }
+            let dip = lags.row_dip(length);
+            let nearness =
+                (lags.unrelated / dip.difference.max(1e-6 * lags.unrelated).max(f64::MIN_POSITIVE)).ln();
+            RowCandidate { length, dip, score: dip_weight(dip) + 0.2 * nearness.clamp(-1.0, 2.5) }
         })
         .collect();
     rows.sort_by(|a, b| b.score.total_cmp(&a.score));
@@ -150,13 +151,13 @@ pub(super) fn rows(size: &Size, lags: &Lags, said: Said) -> Vec<Row> {
     rows.retain(|row| {
         at += 1;
         let is_said = said.dims.is_some_and(|dims| dims[0] == row.length);
-        is_said || at <= ROWS && row.score > best - HOPELESS
+        is_said || at <= MAX_ROW_CANDIDATES && row.score > best - MAX_SCORE_DEFICIT
     });
     rows
 }
 
 /// Edge of a cube of `voxels` voxels; `None` if there is none.
-fn cube(voxels: u64) -> Option<usize> {
+fn cube_edge(voxels: u64) -> Option<usize> {
     let edge = (voxels as f64).cbrt().round() as u64;
     (edge.checked_pow(3)? == voxels).then_some(edge as usize)
 }
@@ -164,20 +165,20 @@ fn cube(voxels: u64) -> Option<usize> {
 /// Scored shapes for a row length: numbers of rows in a slice, and of slices.
 pub(super) fn slices(
     bytes: &mut RawBytes,
-    size: &Size,
-    lags: &Lags,
-    row: Row,
+    size: &RawFileLength,
+    lags: &LagDifferences,
+    row: RowCandidate,
     agreeing: &[usize],
-    said: Said,
-) -> io::Result<Vec<Shape>> {
-    let mut tried: Vec<Tried> = Vec::new();
-    for (header, voxels) in size.usual() {
-        let Some(rest) = whole(voxels, row.length as u64) else { continue };
-        for y in (SHORTEST..=LONGEST.min(rest as usize)).filter(|y| rest.is_multiple_of(*y as u64)) {
+    said: RawNameHints,
+) -> io::Result<Vec<ScoredShape>> {
+    let mut tried: Vec<ShapeCandidate> = Vec::new();
+    for (header, voxels) in size.usual_headers() {
+        let Some(rest) = exact_quotient(voxels, row.length as u64) else { continue };
+        for y in (MIN_ROW..=MAX_EDGE.min(rest as usize)).filter(|y| rest.is_multiple_of(*y as u64)) {
             let z = rest / y as u64;
-            if z <= LONGEST as u64 {
+            if z <= MAX_EDGE as u64 {
                 let dims = [row.length, y, z as usize];
-                tried.push(Tried::new(dims, header, said));
+                tried.push(ShapeCandidate::new(dims, header, said));
             }
         }
     }
@@ -185,43 +186,52 @@ pub(super) fn slices(
         let voxels = dims.iter().fold(size.voxel, |product, &n| product.saturating_mul(n as u64));
         let header = size.bytes.saturating_sub(voxels);
         let header = if header % size.voxel == size.phase { header } else { 0 };
-        tried.push(Tried::new(dims, header, said));
+        tried.push(ShapeCandidate::new(dims, header, said));
     }
     tried.sort_by(|a, b| b.prior.total_cmp(&a.prior));
-    tried.truncate(SLICES);
-    tried.extend(left_over(size, agreeing, row.length, said));
+    tried.truncate(MAX_SLICE_CANDIDATES);
+    tried.extend(shapes_with_remainder_header(size, agreeing, row.length, said));
     let mut shapes = Vec::new();
     // The agreement of slices depends only on their number of rows, not on the header.
-    let mut known: HashMap<usize, Dip> = HashMap::new();
-    for Tried { dims, header, prior } in tried {
+    let mut known: HashMap<usize, LagDip> = HashMap::new();
+    for ShapeCandidate { dims, header, prior } in tried {
         let slice = match known.get(&dims[1]) {
-            _ if dims[2] <= 1 => Dip::default(),
+            _ if dims[2] <= 1 => LagDip::default(),
             Some(&slice) => slice,
             None => {
-                let slice = lags.slice(bytes, dims[0], dims[1])?;
+                let slice = lags.slice_dip(bytes, dims[0], dims[1])?;
                 known.insert(dims[1], slice);
                 slice
             }
         };
-        let unlike = lags.unlike.max(f64::MIN_POSITIVE);
+        let unlike = lags.unrelated.max(f64::MIN_POSITIVE);
         let far = if slice.difference > 0.0 || slice.sigmas != 0.0 { slice.difference } else { unlike };
         let nearness = (unlike / far.max(1e-6 * unlike)).ln().clamp(-1.0, 2.5);
-        let score = row.score + weight(slice) + 0.2 * nearness + prior;
+        let score = row.score + dip_weight(slice) + 0.2 * nearness + prior;
         let across = lags.differences.get(1).copied().unwrap_or_default();
-        shapes.push(Shape { dims, header, row: row.dip, slice, across, unlike: lags.unlike, score });
+        shapes.push(ScoredShape {
+            dims,
+            header,
+            row: row.dip,
+            slice,
+            neighbour_difference: across,
+            unrelated_difference: lags.unrelated,
+            score,
+        });
     }
     Ok(shapes)
 }
 
 /// Exact quotient; `None` if there is a remainder.
-fn whole(n: u64, by: u64) -> Option<u64> {
+fn exact_quotient(n: u64, by: u64) -> Option<u64> {
     (by > 0 && n > 0 && n.is_multiple_of(by)).then(|| n / by)
 }
 
 /// Lengths of slices, in voxels, at which neighbours agree, collected over all row lengths.
-pub(super) fn agreeing(lags: &Lags, rows: &[Row]) -> Vec<usize> {
-    let of_row =
-        |row: &Row| lags.slices(row.length).into_iter().map(|rows| rows * row.length).collect::<Vec<_>>();
+pub(super) fn agreeing_slice_lengths(lags: &LagDifferences, rows: &[RowCandidate]) -> Vec<usize> {
+    let of_row = |row: &RowCandidate| {
+        lags.slice_heights(row.length).into_iter().map(|rows| rows * row.length).collect::<Vec<_>>()
+    };
     let mut slices: Vec<usize> = rows.iter().flat_map(of_row).collect();
     slices.sort_unstable();
     slices.dedup();
@@ -229,26 +239,31 @@ pub(super) fn agreeing(lags: &Lags, rows: &[Row]) -> Vec<usize> {
 }
 
 /// Candidates by agreeing slices, where the remainder of the file's length is the header.
-fn left_over(size: &Size, agreeing: &[usize], row: usize, said: Said) -> Vec<Tried> {
+fn shapes_with_remainder_header(
+    size: &RawFileLength,
+    agreeing: &[usize],
+    row: usize,
+    said: RawNameHints,
+) -> Vec<ShapeCandidate> {
     let of_slice = |&slice: &usize| {
         let slice_bytes = slice as u64 * size.voxel;
         let slices = size.bytes / slice_bytes;
         let header = size.bytes - slices * slice_bytes;
-        let fits = header <= LONGEST_HEADER && header % size.voxel == size.phase;
+        let fits = header <= MAX_HEADER && header % size.voxel == size.phase;
         let dims = [row, slice / row, slices as usize];
-        (fits && (1..=LONGEST as u64).contains(&slices)).then(|| Tried::new(dims, header, said))
+        (fits && (1..=MAX_EDGE as u64).contains(&slices)).then(|| ShapeCandidate::new(dims, header, said))
     };
-    let fitting = agreeing.iter().filter(|slice| slice.is_multiple_of(row) && **slice >= SHORTEST * row);
+    let fitting = agreeing.iter().filter(|slice| slice.is_multiple_of(row) && **slice >= MIN_ROW * row);
     fitting.filter_map(of_slice).collect()
 }
 
 /// Score of a shape before its voxels are examined: plausible proportions, edges and header.
-fn prior(dims: [usize; 3], header: u64, said: Said) -> f64 {
+fn shape_prior(dims: [usize; 3], header: u64, said: RawNameHints) -> f64 {
     let [x, y, z] = dims.map(|n| n as f64);
     let longest = x.max(y).max(z);
     let shortest = x.min(y).min(z);
     let mut score = 0.0;
-    score -= dims.iter().map(|&edge| odd(edge)).sum::<f64>();
+    score -= dims.iter().map(|&edge| edge_penalty(edge)).sum::<f64>();
     score -= 0.05 * (x / y).ln().abs();
     score -= 0.04 * (longest / shortest).ln();
     if dims[0] == dims[1] {

@@ -8,11 +8,11 @@ use crate::data::Volume;
 use crate::data::VoxelType;
 use crate::data::load::Endian;
 use crate::data::load::formats::raw::RawLayout;
-use crate::data::synthetic::{NAMES, builtin};
+use crate::data::synthetic::{BUILTIN_NAMES, builtin};
 
 /// Volume to write, and the layout to write it in.
 #[derive(Debug, Clone, Copy)]
-struct Case {
+struct DetectionCase {
     name: &'static str,
     dims: [usize; 3],
     voxel_type: VoxelType,
@@ -24,21 +24,27 @@ struct Case {
 const SHAPES: [[usize; 3]; 5] = [[96, 75, 70], [65, 90, 83], [80, 72, 98], [102, 102, 77], [105, 78, 83]];
 
 /// Length of a header that no format has, in bytes.
-const UNUSUAL: usize = 1000;
+const UNUSUAL_HEADER_BYTES: usize = 1000;
 
 /// Lengths of headers: none, usual ones, and the unusual one.
-const HEADERS: [usize; 6] = [0, 352, 0, 512, 1024, UNUSUAL];
+const HEADERS: [usize; 6] = [0, 352, 0, 512, 1024, UNUSUAL_HEADER_BYTES];
 
 /// Test cases: every built-in volume in every type, with byte orders, headers and shapes in turn.
-fn cases() -> Vec<Case> {
+fn cases() -> Vec<DetectionCase> {
     let mut cases = Vec::new();
-    for name in NAMES {
+    for name in BUILTIN_NAMES {
         for voxel_type in VoxelType::ALL {
             for _ in 0..2 {
                 let at = cases.len();
                 let endian = if at % 3 == 1 { Endian::Big } else { Endian::Little };
                 let dims = SHAPES[at % SHAPES.len()];
-                cases.push(Case { name, dims, voxel_type, endian, header: HEADERS[at % HEADERS.len()] });
+                cases.push(DetectionCase {
+                    name,
+                    dims,
+                    voxel_type,
+                    endian,
+                    header: HEADERS[at % HEADERS.len()],
+                });
             }
         }
     }
@@ -46,7 +52,7 @@ fn cases() -> Vec<Case> {
 }
 
 /// Writes the middle of a volume, with a little measurement noise, after a header of text.
-fn written(volume: &Volume, case: &Case) -> Vec<u8> {
+fn write_case(volume: &Volume, case: &DetectionCase) -> Vec<u8> {
     let mut bytes: Vec<u8> =
         b"# what follows are voxels\n".iter().copied().cycle().take(case.header).collect();
     let all = volume.dims();
@@ -84,11 +90,11 @@ fn written(volume: &Volume, case: &Case) -> Vec<u8> {
     bytes
 }
 
-fn found(bytes: Vec<u8>, said: Said) -> Vec<Proposal> {
-    proposals(&mut RawBytes::from(bytes), said, &AtomicBool::new(false)).expect("bytes in memory")
+fn found(bytes: Vec<u8>, said: RawNameHints) -> Vec<LayoutProposal> {
+    propose_layouts(&mut RawBytes::from(bytes), said, &AtomicBool::new(false)).expect("bytes in memory")
 }
 
-fn is_true(layout: &RawLayout, case: &Case) -> bool {
+fn is_true(layout: &RawLayout, case: &DetectionCase) -> bool {
     let order = layout.endian == case.endian || case.voxel_type.bytes() == 1;
     layout.dims == case.dims
         && layout.voxel_type == case.voxel_type
@@ -97,30 +103,32 @@ fn is_true(layout: &RawLayout, case: &Case) -> bool {
 }
 
 /// Writes volumes, detects their layouts, and checks how many are right.
-fn check(cases: Vec<Case>) {
+fn check(cases: Vec<DetectionCase>) {
     // Each volume is as large as its shape needs.
     let edges = SHAPES.map(|dims| dims.into_iter().max().unwrap_or_default());
     let volume = |name: &'static str, n: usize| (name, n, builtin(name, Some(n)).expect("a built-in volume"));
     let volumes: Vec<(&str, usize, Volume)> =
-        NAMES.iter().flat_map(|name| edges.map(|n| volume(name, n))).collect();
-    let places: Vec<(Case, Option<usize>, bool)> = cases
+        BUILTIN_NAMES.iter().flat_map(|name| edges.map(|n| volume(name, n))).collect();
+    let places: Vec<(DetectionCase, Option<usize>, bool)> = cases
         .into_par_iter()
         .map(|case| {
             let n = case.dims.into_iter().max().unwrap_or_default();
             let fits = |(name, edge, _): &&(&str, usize, Volume)| *name == case.name && *edge == n;
             let volume = volumes.iter().find(fits).expect("made");
-            let found = found(written(&volume.2, &case), Said::default());
+            let found = found(write_case(&volume.2, &case), RawNameHints::default());
             let place = found.iter().position(|proposal| is_true(&proposal.layout, &case));
             (case, place, found.first().is_some_and(|first| first.evidence.is_clear))
         })
         .collect();
     // A header of unusual length can be part of many shapes, and is only guessed.
-    let (usual, unusual): (Vec<_>, Vec<_>) = places.iter().partition(|(case, _, _)| case.header != UNUSUAL);
+    let (usual, unusual): (Vec<_>, Vec<_>) =
+        places.iter().partition(|(case, _, _)| case.header != UNUSUAL_HEADER_BYTES);
     let guessed = unusual.iter().filter(|(_, place, _)| *place == Some(0)).count();
     let missed: Vec<_> = usual.iter().filter(|(_, place, _)| place.is_none_or(|place| place > 2)).collect();
     let not_first: Vec<_> = usual.iter().filter(|(_, place, _)| *place != Some(0)).collect();
     // Whatever is reported as clear must be right.
-    let is_claimed = |(_, place, is_clear): &&(Case, Option<usize>, bool)| *is_clear && *place != Some(0);
+    let is_claimed =
+        |(_, place, is_clear): &&(DetectionCase, Option<usize>, bool)| *is_clear && *place != Some(0);
     let wrong: Vec<_> = places.iter().filter(is_claimed).collect();
     let clear = places.iter().filter(|(_, _, is_clear)| *is_clear).count();
     let summary = format!(
@@ -168,9 +176,9 @@ fn nothing_is_claimed_of_noise() {
     for (seed, count) in
         [64 * 64 * 64, 100 * 80 * 60, 512 * 512 * 3, 123_457, 50 * 60 * 70 * 4].into_iter().enumerate()
     {
-        let found = found(noise(count, seed as u64 + 1), Said::default());
-        let sure = |proposal: &&Proposal| {
-            let Evidence { rows_agree, slices_agree, is_clear, .. } = proposal.evidence;
+        let found = found(noise(count, seed as u64 + 1), RawNameHints::default());
+        let sure = |proposal: &&LayoutProposal| {
+            let LayoutEvidence { rows_agree, slices_agree, is_clear, .. } = proposal.evidence;
             is_clear || rows_agree && slices_agree
         };
         assert_eq!(found.iter().find(sure), None, "{count} bytes of noise");
@@ -178,20 +186,24 @@ fn nothing_is_claimed_of_noise() {
 }
 
 #[test]
-fn small_and_empty_and_constant_files_are_no_trouble() {
-    assert_eq!(found(Vec::new(), Said::default()), []);
+fn small_empty_and_constant_files_work() {
+    assert_eq!(found(Vec::new(), RawNameHints::default()), []);
     for count in (1..70).chain([255, 1000, 4096]) {
         for fill in [0, 7] {
-            let found = found(vec![fill; count], Said::default());
+            let found = found(vec![fill; count], RawNameHints::default());
             assert!(found.iter().all(|proposal| !proposal.evidence.is_clear), "{count} times {fill}");
         }
-        found(noise(count, 5), Said::default());
+        found(noise(count, 5), RawNameHints::default());
     }
 }
 
 #[test]
-fn what_the_name_says_comes_first() {
-    let said = Said { dims: Some([40, 30, 20]), voxel_type: Some(VoxelType::I16), endian: Some(Endian::Big) };
+fn name_hints_take_precedence() {
+    let said = RawNameHints {
+        dims: Some([40, 30, 20]),
+        voxel_type: Some(VoxelType::I16),
+        endian: Some(Endian::Big),
+    };
     for bytes in [vec![0; 48_000], noise(48_000, 3)] {
         let layout = found(bytes, said)[0].layout;
         assert_eq!(
@@ -208,16 +220,16 @@ fn long_files_are_only_looked_into() {
     // A sparse file: nothing is written.
     file.as_file().set_len(2048 * 2048 * 1024 * 2).unwrap();
     let mut bytes = RawBytes::open(file.path()).unwrap();
-    assert_eq!((bytes.length(), bytes.is_exact(), bytes.is_held()), (8 << 30, true, false));
-    let found = proposals(&mut bytes, Said::default(), &AtomicBool::new(false)).unwrap();
+    assert_eq!((bytes.length(), bytes.is_exact(), bytes.is_in_memory()), (8 << 30, true, false));
+    let found = propose_layouts(&mut bytes, RawNameHints::default(), &AtomicBool::new(false)).unwrap();
     assert!(found.iter().all(|proposal| proposal.layout.file_bytes() == Some(8 << 30)));
-    assert_eq!(proposals(&mut bytes, Said::default(), &AtomicBool::new(true)).unwrap(), []);
+    assert_eq!(propose_layouts(&mut bytes, RawNameHints::default(), &AtomicBool::new(true)).unwrap(), []);
 }
 
 #[test]
 fn of_compressed_files_the_start_is_looked_at() {
     use std::io::Write as _;
-    let case = Case {
+    let case = DetectionCase {
         name: "chair",
         dims: [48, 40, 36],
         voxel_type: VoxelType::U16,
@@ -227,11 +239,11 @@ fn of_compressed_files_the_start_is_looked_at() {
     let volume = builtin(case.name, Some(64)).unwrap();
     let mut file = tempfile::NamedTempFile::new().unwrap();
     let mut encoder = flate2::write::GzEncoder::new(&mut file, flate2::Compression::fast());
-    encoder.write_all(&written(&volume, &case)).unwrap();
+    encoder.write_all(&write_case(&volume, &case)).unwrap();
     encoder.finish().unwrap();
     let mut bytes = RawBytes::open(file.path()).unwrap();
     assert_eq!((bytes.length(), bytes.is_exact()), (48 * 40 * 36 * 2, true));
-    let found = proposals(&mut bytes, Said::default(), &AtomicBool::new(false)).unwrap();
+    let found = propose_layouts(&mut bytes, RawNameHints::default(), &AtomicBool::new(false)).unwrap();
     assert!(is_true(&found[0].layout, &case), "{found:#?}");
     // Longer than the part that is inflated: its trailer gives the length.
     let mut file = tempfile::NamedTempFile::new().unwrap();

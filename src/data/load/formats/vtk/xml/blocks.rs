@@ -7,11 +7,11 @@ use bytemuck::allocation::try_zeroed_vec;
 use flate2::read::ZlibDecoder;
 
 use super::super::super::Endian;
-use super::super::image::invalid;
+use super::super::image::invalid_data;
 
 /// Maximum size of a block, since each is in memory three times, counting the volume: VTK's blocks have 32 KiB by
 /// default, but a file may consist of a single one.
-const LARGEST_BLOCK_BYTES: u64 = 1 << 30;
+const MAX_BLOCK_BYTES: u64 = 1 << 30;
 
 /// Compression scheme of the blocks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,18 +22,18 @@ pub(super) enum Compressor {
 
 /// Format of the header numbers before the data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Words {
+pub(super) struct HeaderWords {
     /// True for 64-bit numbers, false for 32-bit ones.
-    pub(super) are_long: bool,
+    pub(super) are_64_bit: bool,
     pub(super) endian: Endian,
 }
 
-impl Words {
+impl HeaderWords {
     fn read(self, reader: &mut impl Read) -> io::Result<u64> {
         let mut bytes = [0; 8];
-        let bytes = if self.are_long { &mut bytes[..] } else { &mut bytes[..4] };
+        let bytes = if self.are_64_bit { &mut bytes[..] } else { &mut bytes[..4] };
         reader.read_exact(bytes).map_err(|error| match error.kind() {
-            io::ErrorKind::UnexpectedEof => invalid("the data end within their header"),
+            io::ErrorKind::UnexpectedEof => invalid_data("the data end within their header"),
             _ => error,
         })?;
         // Most significant byte first.
@@ -45,19 +45,19 @@ impl Words {
 }
 
 /// Reads the length of uncompressed values, which must be `expected` bytes.
-pub(super) fn check_length(reader: &mut impl Read, words: Words, expected: u64) -> io::Result<()> {
+pub(super) fn check_length(reader: &mut impl Read, words: HeaderWords, expected: u64) -> io::Result<()> {
     let length = words.read(reader)?;
     // Writers truncate longer lengths to 32 bits.
     let is_cut =
-        !words.are_long && expected > u64::from(u32::MAX) && length == expected & u64::from(u32::MAX);
+        !words.are_64_bit && expected > u64::from(u32::MAX) && length == expected & u64::from(u32::MAX);
     if length == expected || is_cut {
         return Ok(());
     }
-    Err(invalid(format!("{expected} bytes were expected, the file announces {length}")))
+    Err(invalid_data(format!("{expected} bytes were expected, the file announces {length}")))
 }
 
 /// Reader of values in compressed blocks.
-pub(super) struct Blocks<R> {
+pub(super) struct CompressedBlocks<R> {
     reader: R,
     compressor: Compressor,
     /// Compressed sizes of the remaining blocks in reverse order, so that the next one is last.
@@ -68,12 +68,12 @@ pub(super) struct Blocks<R> {
     ready: Cursor<Vec<u8>>,
 }
 
-impl<R: Read> Blocks<R> {
+impl<R: Read> CompressedBlocks<R> {
     /// Reads the table of blocks, which must expand to `expected` bytes; `room` is the number of bytes left in the
     /// file, where it is known.
     pub(super) fn open(
         mut reader: R,
-        words: Words,
+        words: HeaderWords,
         compressor: Compressor,
         expected: u64,
         room: Option<u64>,
@@ -88,26 +88,26 @@ impl<R: Read> Blocks<R> {
             .and_then(|whole| whole.checked_mul(block_bytes))
             .and_then(|bytes| bytes.checked_add(last_bytes));
         if total != Some(expected) || last_bytes > block_bytes {
-            return Err(invalid(format!(
+            return Err(invalid_data(format!(
                 "{expected} bytes were expected, the file announces {count} blocks of {block_bytes} bytes, the last \
                  of {last_bytes}"
             )));
         }
-        if block_bytes > LARGEST_BLOCK_BYTES {
-            return Err(invalid(format!(
-                "its blocks of {block_bytes} bytes are larger than the {LARGEST_BLOCK_BYTES} that are read"
+        if block_bytes > MAX_BLOCK_BYTES {
+            return Err(invalid_data(format!(
+                "its blocks of {block_bytes} bytes are larger than the {MAX_BLOCK_BYTES} that are read"
             )));
         }
         // A table larger than the data is implausible, except for very small data.
         if count.saturating_mul(8) > expected.max(1 << 16) {
-            return Err(invalid(format!("its {count} blocks of {block_bytes} bytes are too small")));
+            return Err(invalid_data(format!("its {count} blocks of {block_bytes} bytes are too small")));
         }
         let mut compressed = Vec::new();
         for _ in 0..count {
             let bytes = words.read(&mut reader)?;
             // Neither scheme expands incompressible data beyond this.
             if bytes > block_bytes.saturating_add(block_bytes / 8).saturating_add(1024) {
-                return Err(invalid(format!(
+                return Err(invalid_data(format!(
                     "a block of {block_bytes} bytes cannot have {bytes} when it is compressed"
                 )));
             }
@@ -115,7 +115,7 @@ impl<R: Read> Blocks<R> {
         }
         let sum = compressed.iter().fold(0u64, |sum, &bytes| sum.saturating_add(bytes));
         if room.is_some_and(|room| room < sum) {
-            return Err(invalid(format!(
+            return Err(invalid_data(format!(
                 "the data are truncated: {sum} bytes of blocks expected, room for {} found",
                 room.unwrap_or_default()
             )));
@@ -140,11 +140,11 @@ impl<R: Read> Blocks<R> {
         ready.clear();
         let Some(bytes) = self.compressed.pop() else { return Ok(()) };
         let wanted = if self.compressed.is_empty() { self.last_bytes } else { self.block_bytes };
-        let wanted = usize::try_from(wanted).map_err(|_too_large| invalid("a block is too large"))?;
+        let wanted = usize::try_from(wanted).map_err(|_too_large| invalid_data("a block is too large"))?;
         self.packed.clear();
         let found = self.reader.by_ref().take(bytes).read_to_end(&mut self.packed)?;
         if (found as u64) < bytes {
-            return Err(invalid("the data are truncated: they end within a block"));
+            return Err(invalid_data("the data are truncated: they end within a block"));
         }
         let no_memory = || io::Error::from(io::ErrorKind::OutOfMemory);
         let unpacked = match self.compressor {
@@ -166,13 +166,13 @@ impl<R: Read> Blocks<R> {
         };
         match unpacked {
             Ok(found) if found == wanted => Ok(()),
-            Ok(found) => Err(invalid(format!("a block of {wanted} bytes has {found}"))),
-            Err(why) => Err(invalid(format!("a compressed block is broken: {why}"))),
+            Ok(found) => Err(invalid_data(format!("a block of {wanted} bytes has {found}"))),
+            Err(why) => Err(invalid_data(format!("a compressed block is broken: {why}"))),
         }
     }
 }
 
-impl<R: Read> Read for Blocks<R> {
+impl<R: Read> Read for CompressedBlocks<R> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         if self.ready.position() == self.ready.get_ref().len() as u64 {
             self.refill()?;

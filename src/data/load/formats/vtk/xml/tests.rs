@@ -6,19 +6,19 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use glam::DVec3;
 
-use crate::data::load::tests::shared::{self, assert_refused, zlib};
-use crate::data::load::{Choice, Dimension, Endian, LoadError, LoadErrorKind};
+use crate::data::load::tests::helpers::{self, assert_refused, zlib};
+use crate::data::load::{Endian, FileDimension, LoadError, LoadErrorKind, VolumeChoice};
 use crate::data::xml::tests::{many_attributes, nested_namespaces, slow_texts};
 use crate::data::{Samples, Volume};
 
 const VOXELS: [u8; 8] = [1, 2, 3, 4, 5, 6, 7, 8];
 
-fn load_bytes_as(bytes: &[u8], choice: Choice) -> Result<Volume, LoadError> {
-    shared::load_bytes("v.vti", bytes, choice)
+fn load_bytes_as(bytes: &[u8], choice: VolumeChoice) -> Result<Volume, LoadError> {
+    helpers::load_bytes("v.vti", bytes, choice)
 }
 
 fn load_bytes(bytes: &[u8]) -> Result<Volume, LoadError> {
-    load_bytes_as(bytes, Choice::default())
+    load_bytes_as(bytes, VolumeChoice::default())
 }
 
 /// Builds a file of 2 x 2 x 2 points from attributes of the root, arrays, and content after the image.
@@ -204,7 +204,7 @@ fn one_of_several_arrays_is_chosen() {
         LoadErrorKind::BadInput,
         &["3 arrays", "--array", "0 \"wind & rain\" (2 x 2 x 2)", "2 \"c\" (1 x 1 x 1)"],
     );
-    let choose = |key: &str| Choice::default().with(Dimension::Array, key);
+    let choose = |key: &str| VolumeChoice::default().with_selected(FileDimension::Array, key);
     let first = load_bytes_as(&bytes, choose("0")).unwrap();
     assert_eq!((first.samples(), first.name()), (&Samples::U8(VOXELS.to_vec()), "v wind & rain"));
     let second = load_bytes_as(&bytes, choose("b")).unwrap();
@@ -217,7 +217,7 @@ fn several_components_make_one_value() {
         let numbers: Vec<_> = (0..8 * components).map(|at| (3 + at % components).to_string()).collect();
         let text = numbers.join(" ");
         let attributes = format!("type=\"{kind}\" NumberOfComponents=\"{components}\" format=\"ascii\"");
-        let choice = Choice { component, ..Choice::default() };
+        let choice = VolumeChoice { component, ..VolumeChoice::default() };
         load_bytes_as(&file("", &points(&attributes, &text), b""), choice)
     };
     assert_eq!(*with("Float32", 2, None).unwrap().samples(), Samples::F32(vec![5.0; 8]));
@@ -229,7 +229,7 @@ fn several_components_make_one_value() {
 }
 
 #[test]
-fn a_compressor_that_is_not_read_matters_where_it_has_packed_something() {
+fn unsupported_compressor_is_refused_where_used() {
     let root = "compressor=\"vtkLZMADataCompressor\"";
     let text = points("type=\"UInt8\" format=\"ascii\"", "1 2 3 4\n5 6 7 8");
     assert_eq!(*load_bytes(&file(root, &text, b"")).unwrap().samples(), Samples::U8(VOXELS.to_vec()));
@@ -276,7 +276,7 @@ fn what_cannot_be_read_is_named() {
 }
 
 #[test]
-fn lying_headers_are_refused() {
+fn inconsistent_headers_are_refused() {
     let appended = points("type=\"UInt8\" format=\"appended\" offset=\"0\"", "");
     let read = |root: &str, bytes: &[u8]| {
         let data = [b"<AppendedData encoding=\"raw\">_", bytes].concat();

@@ -9,21 +9,21 @@ use crate::data::load::Endian;
 const WINDOW_BYTES: u64 = 1 << 13;
 
 /// Content of a file with random access through a small window.
-pub(in super::super) struct Bytes {
+pub(crate) struct TiffBytes {
     file: File,
     len: u64,
-    pub(in super::super) endian: Endian,
+    pub(crate) endian: Endian,
     window: Vec<u8>,
     window_at: u64,
 }
 
-impl Bytes {
+impl TiffBytes {
     /// Wraps a file of `len` bytes; little-endian until the header has been read.
-    pub(in super::super) fn of(file: File, len: u64) -> Self {
+    pub(crate) fn new(file: File, len: u64) -> Self {
         Self { file, len, endian: Endian::Little, window: Vec::new(), window_at: 0 }
     }
 
-    pub(in super::super) fn len(&self) -> u64 {
+    pub(crate) fn len(&self) -> u64 {
         self.len
     }
 
@@ -31,7 +31,7 @@ impl Bytes {
     ///
     /// # Errors
     /// `UnexpectedEof` where the file is shorter; nothing is read then.
-    pub(in super::super) fn read(&mut self, at: u64, out: &mut [u8]) -> io::Result<()> {
+    pub(crate) fn read(&mut self, at: u64, out: &mut [u8]) -> io::Result<()> {
         let wanted = out.len() as u64;
         if at.checked_add(wanted).is_none_or(|end| end > self.len) {
             return Err(io::ErrorKind::UnexpectedEof.into());
@@ -53,16 +53,16 @@ impl Bytes {
     }
 
     /// Reads an integer of 1, 2, 4 or 8 bytes.
-    pub(in super::super) fn number(&mut self, at: u64, bytes: usize) -> io::Result<u64> {
+    pub(crate) fn number(&mut self, at: u64, bytes: usize) -> io::Result<u64> {
         let mut found = [0; 8];
         let found = &mut found[..bytes.min(8)];
         self.read(at, found)?;
-        Ok(whole(found, self.endian))
+        Ok(decode_integer(found, self.endian))
     }
 }
 
 /// Decodes an integer of at most eight bytes.
-pub(in super::super) fn whole(bytes: &[u8], endian: Endian) -> u64 {
+pub(crate) fn decode_integer(bytes: &[u8], endian: Endian) -> u64 {
     let join = |number: u64, &byte: &u8| number << 8 | u64::from(byte);
     match endian {
         Endian::Big => bytes.iter().fold(0, join),

@@ -5,14 +5,14 @@ use std::io::Read;
 use flate2::read::ZlibDecoder;
 use weezl::{BitOrder, LzwStatus, decode};
 
-use super::jpeg::{self, Picture};
+use super::jpeg::{self, JpegPart};
 use super::zstd;
 use crate::data::load::LoadControl;
-use crate::data::load::reading::samples::{BLOCK_BYTES, Fault, fill};
+use crate::data::load::reading::samples::{BLOCK_BYTES, ReadFault, read_until_full};
 
 /// Compression scheme of a strip or tile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Codec {
+pub(super) enum TiffCodec {
     None,
     Lzw,
     Deflate,
@@ -21,9 +21,9 @@ pub(super) enum Codec {
     Jpeg,
 }
 
-impl Codec {
+impl TiffCodec {
     /// Returns the scheme by its number in the tag "Compression".
-    pub(super) fn of(compression: u64) -> Option<Self> {
+    pub(super) fn from_tag(compression: u64) -> Option<Self> {
         Some(match compression {
             1 => Self::None,
             5 => Self::Lzw,
@@ -38,7 +38,7 @@ impl Codec {
     }
 
     /// Upper bound of the uncompressed size of `packed` bytes.
-    pub(super) fn most(self, packed: u64) -> u64 {
+    pub(super) fn max_expanded(self, packed: u64) -> u64 {
         let times = match self {
             Self::None => 1,
             // A code of at least 9 bits expands to one of 4096 strings, each one byte longer than another.
@@ -61,16 +61,18 @@ impl Codec {
     pub(super) fn expand(
         self,
         packed: &[u8],
-        picture: Picture<'_>,
+        picture: JpegPart<'_>,
         out: &mut [u8],
         control: &LoadControl,
-    ) -> Result<usize, Fault> {
+    ) -> Result<usize, ReadFault> {
         match self {
-            Self::None => fill(&mut &packed[..], out, control),
+            Self::None => read_until_full(&mut &packed[..], out, control),
             Self::Lzw => expand_lzw(packed, out, control),
-            Self::Deflate => fill(&mut ZlibDecoder::new(packed), out, control),
-            Self::PackBits => fill(&mut PackBits { packed, left: 0, repeated: None }, out, control),
-            Self::Zstd => zstd::expand(packed, picture.whole, out, control),
+            Self::Deflate => read_until_full(&mut ZlibDecoder::new(packed), out, control),
+            Self::PackBits => {
+                read_until_full(&mut PackBits { packed, left: 0, repeated: None }, out, control)
+            }
+            Self::Zstd => zstd::expand(packed, picture.full_bytes, out, control),
             Self::Jpeg => jpeg::expand(picture, packed, out),
         }
     }
@@ -78,13 +80,13 @@ impl Codec {
 
 /// Decodes LZW in the TIFF variant: most significant bit first, with an early change of the code width (TIFF 6.0,
 /// section 13).
-fn expand_lzw(mut packed: &[u8], out: &mut [u8], control: &LoadControl) -> Result<usize, Fault> {
+fn expand_lzw(mut packed: &[u8], out: &mut [u8], control: &LoadControl) -> Result<usize, ReadFault> {
     let mut decoder = decode::Configuration::with_tiff_size_switch(BitOrder::Msb, 8)
         .with_yield_on_full_buffer(true)
         .build();
     let mut filled = 0;
     while filled < out.len() {
-        control.check().map_err(Fault::Stopped)?;
+        control.check().map_err(ReadFault::Stopped)?;
         let end = out.len().min(filled + BLOCK_BYTES);
         let step = decoder.decode_bytes(packed, &mut out[filled..end]);
         packed = packed.get(step.consumed_in..).unwrap_or_default();
@@ -92,7 +94,7 @@ fn expand_lzw(mut packed: &[u8], out: &mut [u8], control: &LoadControl) -> Resul
         match step.status {
             Ok(LzwStatus::Ok) if step.consumed_in > 0 || step.consumed_out > 0 => {}
             Ok(_) => break,
-            Err(error) => return Err(Fault::Io(std::io::Error::other(error))),
+            Err(error) => return Err(ReadFault::Io(std::io::Error::other(error))),
         }
     }
     Ok(filled)
@@ -140,9 +142,9 @@ impl Read for PackBits<'_> {
 mod tests {
     use super::*;
 
-    fn expanded(codec: Codec, packed: &[u8], most: usize) -> Result<Vec<u8>, Fault> {
+    fn expanded(codec: TiffCodec, packed: &[u8], most: usize) -> Result<Vec<u8>, ReadFault> {
         let mut out = vec![0; most];
-        let count = codec.expand(packed, Picture::default(), &mut out, &LoadControl::new())?;
+        let count = codec.expand(packed, JpegPart::default(), &mut out, &LoadControl::new())?;
         out.truncate(count);
         Ok(out)
     }
@@ -155,34 +157,39 @@ mod tests {
         let mut whole =
             vec![0xAA, 0xAA, 0xAA, 0x80, 0x00, 0x2A, 0xAA, 0xAA, 0xAA, 0xAA, 0x80, 0x00, 0x2A, 0x22];
         whole.extend([0xAA; 10]);
-        assert_eq!(expanded(Codec::PackBits, &packed, 100).unwrap(), whole);
-        assert_eq!(expanded(Codec::PackBits, &packed, 5).unwrap(), whole[..5]);
-        assert_eq!(expanded(Codec::PackBits, &packed[..4], 100).unwrap(), whole[..4], "cut off in a run");
-        assert_eq!(expanded(Codec::PackBits, &[0xFE], 100).unwrap(), [0u8; 0]);
+        assert_eq!(expanded(TiffCodec::PackBits, &packed, 100).unwrap(), whole);
+        assert_eq!(expanded(TiffCodec::PackBits, &packed, 5).unwrap(), whole[..5]);
+        assert_eq!(expanded(TiffCodec::PackBits, &packed[..4], 100).unwrap(), whole[..4], "cut off in a run");
+        assert_eq!(expanded(TiffCodec::PackBits, &[0xFE], 100).unwrap(), [0u8; 0]);
     }
 
     #[test]
-    fn what_cannot_be_in_so_few_bytes_is_known() {
+    fn expansion_is_bounded() {
         let mut encoder = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
         std::io::Write::write_all(&mut encoder, &vec![0; 1 << 22]).unwrap();
         let packed = encoder.finish().unwrap().len() as u64;
-        assert!(Codec::Deflate.most(packed) >= 1 << 22 && Codec::Deflate.most(packed) < 5 << 20);
-        assert_eq!(Codec::None.most(20), 20);
+        assert!(
+            TiffCodec::Deflate.max_expanded(packed) >= 1 << 22
+                && TiffCodec::Deflate.max_expanded(packed) < 5 << 20
+        );
+        assert_eq!(TiffCodec::None.max_expanded(20), 20);
     }
 
     #[test]
-    fn no_codec_gives_more_than_asked_for_and_all_bear_nonsense() {
+    fn codecs_are_bounded_and_survive_garbage() {
         let bytes: Vec<u8> = (0..4000u32).map(|at| (at * at % 251) as u8).collect();
         let mut lzw = weezl::encode::Encoder::with_tiff_size_switch(BitOrder::Msb, 8);
         let lzw = lzw.encode(&bytes).unwrap();
         let zstd = ruzstd::encoding::compress_to_vec(&bytes[..], ruzstd::encoding::CompressionLevel::Fastest);
-        for (codec, packed) in [(Codec::None, bytes.clone()), (Codec::Lzw, lzw), (Codec::Zstd, zstd)] {
+        for (codec, packed) in
+            [(TiffCodec::None, bytes.clone()), (TiffCodec::Lzw, lzw), (TiffCodec::Zstd, zstd)]
+        {
             assert_eq!(expanded(codec, &packed, 4000).unwrap(), bytes, "{codec:?}");
             assert_eq!(expanded(codec, &packed, 70).unwrap(), bytes[..70], "{codec:?}");
             let rest = expanded(codec, &packed[..packed.len() / 2], 4000);
             assert!(rest.is_err() || rest.is_ok_and(|rest| rest.len() < 4000), "{codec:?}");
         }
-        for codec in [Codec::Lzw, Codec::Deflate, Codec::PackBits, Codec::Zstd] {
+        for codec in [TiffCodec::Lzw, TiffCodec::Deflate, TiffCodec::PackBits, TiffCodec::Zstd] {
             // An error, or few bytes: both terminate.
             let _either = expanded(codec, &bytes, 100_000);
             let _nothing = expanded(codec, &[], 10);

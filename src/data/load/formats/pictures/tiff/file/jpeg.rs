@@ -6,7 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use jpeg_decoder::{ColorTransform, Decoder, PixelFormat};
 
-use crate::data::load::reading::samples::Fault;
+use crate::data::load::reading::samples::ReadFault;
 
 /// Markers at the beginning and end of a stream (SOI and EOI).
 const START: [u8; 2] = [0xff, 0xd8];
@@ -14,35 +14,35 @@ const END: [u8; 2] = [0xff, 0xd9];
 
 /// Parameters of a strip or tile from the page's directory.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Picture<'a> {
+pub(super) struct JpegPart<'a> {
     /// Stream of tables only; empty where each picture has its own.
     pub(super) tables: &'a [u8],
     /// Pixels across and down; a last strip may have fewer rows.
     pub(super) size: [u64; 2],
     /// Uncompressed bytes of a strip or tile with all its rows.
-    pub(super) whole: usize,
+    pub(super) full_bytes: usize,
     /// Number of samples per pixel.
     pub(super) samples: usize,
     /// True for `YCbCr` data, which is converted to RGB.
-    pub(super) is_ybr: bool,
+    pub(super) is_ycbcr: bool,
 }
 
 /// Decodes a picture into `out`, row by row; returns the number of bytes.
 ///
 /// # Errors
 /// `Io` with a description of the defect.
-pub(super) fn expand(picture: Picture<'_>, packed: &[u8], out: &mut [u8]) -> Result<usize, Fault> {
+pub(super) fn expand(picture: JpegPart<'_>, packed: &[u8], out: &mut [u8]) -> Result<usize, ReadFault> {
     // A panic of the decoder becomes an error of this picture, and does not end the program.
     let decoded = catch_unwind(AssertUnwindSafe(|| decode(picture, packed, out.len())))
         .unwrap_or_else(|_| Err("it is broken in a way that its decoder does not know".to_owned()));
-    let decoded = decoded.map_err(|why| Fault::Io(io::Error::other(why)))?;
+    let decoded = decoded.map_err(|why| ReadFault::Io(io::Error::other(why)))?;
     let count = decoded.len().min(out.len());
     out[..count].copy_from_slice(&decoded[..count]);
     Ok(count)
 }
 
-fn decode(picture: Picture<'_>, packed: &[u8], wanted: usize) -> Result<Vec<u8>, String> {
-    let Picture { tables, size: [across, down], whole: _, samples, is_ybr } = picture;
+fn decode(picture: JpegPart<'_>, packed: &[u8], wanted: usize) -> Result<Vec<u8>, String> {
+    let JpegPart { tables, size: [across, down], full_bytes: _, samples, is_ycbcr: is_ybr } = picture;
     let Some(rest) = packed.strip_prefix(&START) else {
         return Err("no picture of JPEG begins there".to_owned());
     };
@@ -98,11 +98,11 @@ mod tests {
         }
     }
 
-    fn expanded(picture: Picture<'_>, packed: &[u8], count: usize) -> Result<Vec<u8>, String> {
+    fn expanded(picture: JpegPart<'_>, packed: &[u8], count: usize) -> Result<Vec<u8>, String> {
         let mut out = vec![0; count];
         match expand(picture, packed, &mut out) {
             Ok(found) => Ok(out[..found].to_vec()),
-            Err(Fault::Io(error)) => Err(error.to_string()),
+            Err(ReadFault::Io(error)) => Err(error.to_string()),
             Err(other) => panic!("{other:?}"),
         }
     }
@@ -111,13 +111,13 @@ mod tests {
     fn tables_stand_in_the_picture_or_once_for_all() {
         let pixels: Vec<u8> = (0..16 * 12).map(|at| (at % 16 * 12 + at / 16 * 3) as u8).collect();
         let stream = encoded(&pixels, 16, 12, ExtendedColorType::L8);
-        let picture = Picture { size: [16, 12], samples: 1, ..Picture::default() };
+        let picture = JpegPart { size: [16, 12], samples: 1, ..JpegPart::default() };
         let whole = expanded(picture, &stream, pixels.len()).unwrap();
         let off = whole.iter().zip(&pixels).map(|(a, b)| a.abs_diff(*b)).max();
         assert!(whole.len() == pixels.len() && off <= Some(3), "{off:?}");
         let [tables, rest] = apart(&stream);
         assert!(expanded(picture, &rest, pixels.len()).is_err(), "its tables are elsewhere");
-        assert_eq!(expanded(Picture { tables: &tables, ..picture }, &rest, pixels.len()), Ok(whole.clone()));
+        assert_eq!(expanded(JpegPart { tables: &tables, ..picture }, &rest, pixels.len()), Ok(whole.clone()));
         // The last strip of a page has fewer rows, but its picture may have all.
         assert_eq!(expanded(picture, &stream, 16 * 5).unwrap(), whole[..16 * 5]);
     }
@@ -125,24 +125,24 @@ mod tests {
     #[test]
     fn the_page_says_what_colours_are() {
         let stream = encoded(&[200, 30, 90].repeat(64), 8, 8, ExtendedColorType::Rgb8);
-        let picture = Picture { size: [8, 8], samples: 3, is_ybr: true, ..Picture::default() };
+        let picture = JpegPart { size: [8, 8], samples: 3, is_ycbcr: true, ..JpegPart::default() };
         let first =
             |picture| expanded(picture, &stream, 8 * 8 * 3).map(|found| [found[0], found[1], found[2]]);
         let near =
             |found: [u8; 3], wanted: [u8; 3]| found.iter().zip(wanted).all(|(a, b)| a.abs_diff(b) <= 2);
         assert!(near(first(picture).unwrap(), [200, 30, 90]));
         // Luma and colour differences without conversion, by the weights of ITU-R BT.601.
-        assert!(near(first(Picture { is_ybr: false, ..picture }).unwrap(), [88, 129, 208]));
+        assert!(near(first(JpegPart { is_ycbcr: false, ..picture }).unwrap(), [88, 129, 208]));
     }
 
     #[test]
     fn what_is_not_as_the_page_says_is_refused() {
         let stream = encoded(&[9; 64], 8, 8, ExtendedColorType::L8);
-        let picture = Picture { size: [8, 8], samples: 1, ..Picture::default() };
+        let picture = JpegPart { size: [8, 8], samples: 1, ..JpegPart::default() };
         for (picture, packed, words) in [
-            (Picture { size: [9, 8], ..picture }, &stream[..], "8 x 8 pixels"),
-            (Picture { size: [8, 7], ..picture }, &stream, "8 x 8 pixels"),
-            (Picture { samples: 3, size: [8, 8], ..picture }, &stream, "L8"),
+            (JpegPart { size: [9, 8], ..picture }, &stream[..], "8 x 8 pixels"),
+            (JpegPart { size: [8, 7], ..picture }, &stream, "8 x 8 pixels"),
+            (JpegPart { samples: 3, size: [8, 8], ..picture }, &stream, "L8"),
             (picture, b"\x55\x55\x55", "begins"),
             (picture, &stream[..40], ""),
         ] {

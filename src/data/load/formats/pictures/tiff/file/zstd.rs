@@ -8,11 +8,11 @@ use std::io::{self, Read as _};
 use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
 
 use crate::data::load::LoadControl;
-use crate::data::load::reading::samples::Fault;
+use crate::data::load::reading::samples::ReadFault;
 
 /// Maximum window size: that of libzstd's highest level, and the limit of its decoder by default
 /// (`ZSTD_WINDOWLOG_LIMIT_DEFAULT`). Its memory is allocated only as it fills.
-const MOST_WINDOW_BYTES: u64 = 128 << 20;
+const MAX_WINDOW_BYTES: u64 = 128 << 20;
 
 /// Maximum size of a block (RFC 8878, 3.1.1.2.4): amount unpacked between two checks for cancellation.
 const BLOCK_BYTES: usize = 128 << 10;
@@ -27,22 +27,22 @@ pub(super) fn expand(
     whole: usize,
     out: &mut [u8],
     control: &LoadControl,
-) -> Result<usize, Fault> {
-    let broken = |error| Fault::Io(io::Error::other(error));
+) -> Result<usize, ReadFault> {
+    let broken = |error| ReadFault::Io(io::Error::other(error));
     let mut decoder = FrameDecoder::new();
-    decoder.set_max_window_size(MOST_WINDOW_BYTES);
+    decoder.set_max_window_size(MAX_WINDOW_BYTES);
     decoder.init(&mut packed).map_err(broken)?;
     let (mut filled, mut unpacked) = (0, 0);
     let most = whole.max(out.len());
     loop {
-        control.check().map_err(Fault::Stopped)?;
+        control.check().map_err(ReadFault::Stopped)?;
         // Bytes within the window become available only at the end of the frame.
-        filled += decoder.read(&mut out[filled..]).map_err(Fault::Io)?;
+        filled += decoder.read(&mut out[filled..]).map_err(ReadFault::Io)?;
         if filled == out.len() || decoder.is_finished() && decoder.can_collect() == 0 {
             return Ok(filled);
         }
         if unpacked > most {
-            return Err(Fault::Long);
+            return Err(ReadFault::Long);
         }
         decoder.decode_blocks(&mut packed, BlockDecodingStrategy::UptoBytes(BLOCK_BYTES)).map_err(broken)?;
         unpacked += BLOCK_BYTES;
@@ -67,27 +67,27 @@ mod tests {
         frame
     }
 
-    fn expanded(packed: &[u8], most: usize) -> Result<usize, Fault> {
+    fn expanded(packed: &[u8], most: usize) -> Result<usize, ReadFault> {
         expand(packed, 2 * BLOCK_BYTES, &mut vec![0; most], &LoadControl::new())
     }
 
     #[test]
-    fn large_windows_are_no_more_than_words() {
+    fn large_windows_are_not_allocated() {
         // The window of level 22.
         assert_eq!(expanded(&repeated(17, 3, true), 3 * BLOCK_BYTES).ok(), Some(3 * BLOCK_BYTES));
         assert_eq!(expanded(&repeated(17, 2, true), 1000).ok(), Some(1000), "what comes after is left alone");
-        assert!(matches!(expanded(&repeated(18, 3, true), 1000), Err(Fault::Io(_))), "256 MiB");
+        assert!(matches!(expanded(&repeated(18, 3, true), 1000), Err(ReadFault::Io(_))), "256 MiB");
     }
 
     #[test]
-    fn frames_that_go_on_are_not_followed() {
+    fn overlong_frames_are_refused() {
         for exponent in [10, 17] {
             let endless = repeated(exponent, 20_000, true);
             // 2.4 GiB, of which no more than a strip is unpacked.
-            assert!(matches!(expanded(&endless, 1000), Err(Fault::Long)), "{exponent}");
+            assert!(matches!(expanded(&endless, 1000), Err(ReadFault::Long)), "{exponent}");
         }
         // With a window of one block, bytes become available before the end.
         assert_eq!(expanded(&repeated(7, 20_000, true), 1000).ok(), Some(1000));
-        assert!(matches!(expanded(&repeated(10, 3, false), 1 << 20), Err(Fault::Io(_))), "cut off");
+        assert!(matches!(expanded(&repeated(10, 3, false), 1 << 20), Err(ReadFault::Io(_))), "cut off");
     }
 }

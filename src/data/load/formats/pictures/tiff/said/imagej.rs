@@ -4,25 +4,25 @@
 //! data are followed by those of the other slices. Channels vary fastest over the pages, then slices, then time
 //! steps.
 
-use super::super::fault::HELP;
-use super::super::file::Tiff;
-use super::super::plain::usable;
-use super::super::stack::{Slice, Stack, Steps};
-use super::contiguous::contiguous;
-use super::names::ImagejMetadata;
-use super::place::place;
-use crate::data::Hints;
-use crate::data::attempt::Attempt;
+use super::super::file::TiffFile;
+use super::super::messages::HELP;
+use super::super::stack::{ChannelsAndTimes, TiffSlice, TiffStack};
+use super::super::undescribed::usable_pages;
+use super::contiguous::contiguous_pages;
+use super::imagej_names::ImagejMetadata;
+use super::spacing::placement_from_resolution;
+use crate::data::ValueMetadata;
 use crate::data::load::reading::input::stem;
-use crate::data::load::{Choice, LoadError};
+use crate::data::load::{LoadError, VolumeChoice};
+use crate::data::load_context::LoadContext;
 
 /// Maximum number of channels that `ImageJ` shows together.
-const MOST_CHANNELS: usize = 7;
+const MAX_CHANNELS: usize = 7;
 
 /// Lines of an `ImageJ` description.
-struct Said<'a>(&'a str);
+struct ImagejDescription<'a>(&'a str);
 
-impl<'a> Said<'a> {
+impl<'a> ImagejDescription<'a> {
     fn text(&self, name: &str) -> Option<&'a str> {
         self.0.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix('=')).map(str::trim)
     }
@@ -37,29 +37,29 @@ impl<'a> Said<'a> {
 }
 
 /// Returns true if a description was written by `ImageJ`.
-pub(in super::super) fn is_imagej(description: &str) -> bool {
+pub(crate) fn is_imagej(description: &str) -> bool {
     description.starts_with("ImageJ=")
 }
 
 /// Builds the stack of a file with such a description.
-pub(in super::super) fn stack(
-    attempt: Attempt<'_>,
-    tiff: &mut Tiff,
+pub(crate) fn stack(
+    attempt: LoadContext<'_>,
+    tiff: &mut TiffFile,
     description: &str,
-    choice: &Choice,
-) -> Result<Stack, LoadError> {
-    let said = Said(description);
+    choice: &VolumeChoice,
+) -> Result<TiffStack, LoadError> {
+    let said = ImagejDescription(description);
     let images = said.count("images");
     if let (Some(images), &[page]) = (images, tiff.pages.as_slice())
         && images > 1
-        && page.is_bare()
+        && page.is_plain_rows()
     {
-        tiff.pages = contiguous(attempt, tiff, &page, images, "images")?;
+        tiff.pages = contiguous_pages(attempt, tiff, &page, images, "images")?;
     }
     let mut remarks = Vec::new();
-    let pages = usable(tiff, &mut remarks);
+    let pages = usable_pages(tiff, &mut remarks);
     let Some(first) = pages.first().map(|&page| tiff.pages[page]) else {
-        return Err(attempt.bad_input("pages", "there is none", HELP));
+        return Err(attempt.bad_input_error("pages", "there is none", HELP));
     };
     let (channels, frames) = (said.count("channels").unwrap_or(1), said.count("frames").unwrap_or(1));
     let slices = said.count("slices");
@@ -69,7 +69,7 @@ pub(in super::super) fn stack(
     let is_whole = others.and_then(|others| others.checked_mul(slices)).is_some_and(|all| all <= pages.len());
     let (channels, slices, frames) = if is_whole {
         // Programs that write such files without naming the axes make slices channels.
-        let is_depth = channels > MOST_CHANNELS && [slices, frames] == [1, 1] && choice.channel.is_none();
+        let is_depth = channels > MAX_CHANNELS && [slices, frames] == [1, 1] && choice.channel.is_none();
         if is_depth {
             remarks.push(format!("{channels} channels of one slice each are taken as slices"));
         }
@@ -84,28 +84,28 @@ pub(in super::super) fn stack(
     };
     let dims = [first.width, first.height, slices as u64];
     let channel_names = ImagejMetadata::read(tiff).channel_names(channels, pages.len());
-    let chosen = Steps { dims, channels, channel_names, frames }.chosen(attempt, choice)?;
-    let mut placement = place(tiff, said.text("unit"), said.number("spacing"));
+    let chosen = ChannelsAndTimes { dims, channels, channel_names, frames }.choose(attempt, choice)?;
+    let mut placement = placement_from_resolution(tiff, said.text("unit"), said.number("spacing"));
     placement.remarks.splice(0..0, remarks);
-    chosen.remark(&mut placement);
+    chosen.add_time_remark(&mut placement);
     let page_of = |[frame, slice]: [usize; 2]| pages[(frame * slices + slice) * channels + chosen.channel];
-    Ok(Stack {
+    Ok(TiffStack {
         name: stem(attempt.path),
         slices: chosen
             .slices(slices, frames)
             .into_iter()
-            .map(|place| Some(Slice { file: 0, page: page_of(place) }))
+            .map(|place| Some(TiffSlice { file: 0, page: page_of(place) }))
             .collect(),
-        beside: Vec::new(),
+        other_files: Vec::new(),
         sample: None,
         placement,
         hints: hints(&said, channels),
-        scale: scale(&said),
+        scale: slope_and_intercept(&said),
     })
 }
 
 /// Slope and intercept of the values. `ImageJ` stores signed 16-bit numbers in this way.
-fn scale(said: &Said<'_>) -> [f64; 2] {
+fn slope_and_intercept(said: &ImagejDescription<'_>) -> [f64; 2] {
     // Function 0 is linear; others are calibration curves for film densities.
     match (said.text("cf"), said.number("c0"), said.number("c1")) {
         (Some("0"), Some(intercept), Some(slope)) => [slope, intercept],
@@ -113,8 +113,8 @@ fn scale(said: &Said<'_>) -> [f64; 2] {
     }
 }
 
-fn hints(said: &Said<'_>, channels: usize) -> Hints {
-    let mut hints = Hints::default();
+fn hints(said: &ImagejDescription<'_>, channels: usize) -> ValueMetadata {
+    let mut hints = ValueMetadata::default();
     // With several channels, the window is that of the first.
     if let (1, Some(low), Some(high)) = (channels, said.number("min"), said.number("max")) {
         hints.set_window(low, high);

@@ -2,10 +2,10 @@
 
 mod contiguous;
 pub(super) mod imagej;
-mod length;
+pub(super) mod imagej_names;
+mod length_unit;
 pub(super) mod lsm;
-pub(super) mod names;
 pub(super) mod ome;
 pub(super) mod palette;
-mod place;
 pub(super) mod shaped;
+mod spacing;

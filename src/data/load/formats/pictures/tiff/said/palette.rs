@@ -1,7 +1,7 @@
 //! Colour palettes (TIFF 6.0, section 5): values are measurements or labels, and the colours serve display only;
 //! labels keep them.
 
-use crate::data::load::formats::pictures::tiff::file::Tiff;
+use crate::data::load::formats::pictures::tiff::file::TiffFile;
 use crate::data::load::formats::pictures::tiff::file::page::tag;
 use crate::data::{DataKind, Volume};
 
@@ -9,34 +9,34 @@ use crate::data::{DataKind, Volume};
 const PALETTE: f64 = 3.0;
 
 /// Number of entries of a 16-bit palette, the longest possible.
-const MOST_NUMBERS: u64 = 3 << 16;
+const MAX_NUMBERS: u64 = 3 << 16;
 
 /// Remark on palettes for the user.
 const REMARK: &str = "values are the numbers of its table of colours";
 
 /// Palette: red of all entries, then green, then blue, each up to 65535.
-pub(in super::super) struct Palette(Vec<u64>);
+pub(crate) struct TiffPalette(Vec<u64>);
 
-impl Palette {
+impl TiffPalette {
     /// Reads the palette of the first page, if it has one.
-    pub(in super::super) fn of(tiff: &mut Tiff) -> Option<Self> {
-        let is_palette = tiff.said(tag::PHOTOMETRIC) == Some(PALETTE);
+    pub(crate) fn read(tiff: &mut TiffFile) -> Option<Self> {
+        let is_palette = tiff.number_entry(tag::PHOTOMETRIC) == Some(PALETTE);
         let entry = tiff.first.get(tag::COLOR_MAP).filter(|_| is_palette)?;
-        entry.numbers(&mut tiff.bytes, MOST_NUMBERS).ok().map(Self)
+        entry.numbers(&mut tiff.bytes, MAX_NUMBERS).ok().map(Self)
     }
 
     /// Adds the remark to a volume and, if it is a label map, the colours of its labels.
-    pub(in super::super) fn on(&self, volume: Volume) -> Volume {
+    pub(crate) fn apply(&self, volume: Volume) -> Volume {
         let remarks = volume.remarks().iter().cloned().chain([REMARK.to_owned()]).collect();
         let volume = volume.with_remarks(remarks);
         if !matches!(volume.kind().kind, DataKind::LabelMap { .. }) {
             return volume;
         }
-        let mut hints = volume.hints().clone();
+        let mut hints = volume.metadata().clone();
         for label in volume.labels().map_or(&[][..], |labels| labels.labels()) {
             hints.labels.insert(label.number, "", self.color(label.number));
         }
-        volume.with_hints(hints)
+        volume.with_metadata(hints)
     }
 
     fn color(&self, number: i64) -> Option<[f32; 3]> {

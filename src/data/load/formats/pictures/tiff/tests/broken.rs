@@ -1,17 +1,17 @@
 //! Tests of TIFF files that are truncated, inconsistent, or of unsupported kinds.
 
-use super::writer::{LITTLE, LONG, Leaf, SHORT, Writer};
+use super::writer::{LITTLE, LONG, SHORT, TiffLeaf, TiffWriter};
 use super::{assert_refused, load_bytes};
 use crate::data::load::formats::pictures::tiff::file::page::tag;
 use crate::data::load::{Endian, LoadControl, LoadErrorKind, LoadOptions, load};
 
-fn leaf() -> Leaf {
+fn leaf() -> TiffLeaf {
     LITTLE.leaf([2, 2], 8, &[1, 2, 3, 4])
 }
 
 #[test]
 fn files_that_end_anywhere_are_refused() {
-    for writer in [LITTLE, Writer { endian: Endian::Big, is_big: true }] {
+    for writer in [LITTLE, TiffWriter { endian: Endian::Big, is_big: true }] {
         let page = writer.leaf([2, 2], 8, &[1, 2, 3, 4]);
         let whole = writer.file(&[page.clone().with_text(tag::DESCRIPTION, "some words"), page]);
         load_bytes(&whole).unwrap();

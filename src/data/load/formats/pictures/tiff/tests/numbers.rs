@@ -2,17 +2,17 @@
 
 use std::io::Write as _;
 
-use super::writer::{LITTLE, Leaf, SHORT, Writer};
+use super::writer::{LITTLE, SHORT, TiffLeaf, TiffWriter};
 use super::{assert_refused, load_bytes, load_chosen, samples_of};
 use crate::data::Samples;
 use crate::data::load::formats::pictures::tiff::file::page::tag;
-use crate::data::load::{Choice, Endian, LoadErrorKind};
+use crate::data::load::{Endian, LoadErrorKind, VolumeChoice};
 
-const WRITERS: [Writer; 4] = [
+const WRITERS: [TiffWriter; 4] = [
     LITTLE,
-    Writer { endian: Endian::Big, is_big: false },
-    Writer { endian: Endian::Little, is_big: true },
-    Writer { endian: Endian::Big, is_big: true },
+    TiffWriter { endian: Endian::Big, is_big: false },
+    TiffWriter { endian: Endian::Little, is_big: true },
+    TiffWriter { endian: Endian::Big, is_big: true },
 ];
 
 /// Encodes twelve pixels, 4 x 3, in the byte order of a writer.
@@ -57,7 +57,7 @@ fn all_types_in_both_orders_and_sizes_of_places() {
     }
 }
 
-fn packed(compression: u64, bytes: &[u8]) -> Vec<u8> {
+fn compress(compression: u64, bytes: &[u8]) -> Vec<u8> {
     match compression {
         5 => {
             let mut encoder = weezl::encode::Encoder::with_tiff_size_switch(weezl::BitOrder::Msb, 8);
@@ -75,7 +75,7 @@ fn packed(compression: u64, bytes: &[u8]) -> Vec<u8> {
 }
 
 /// Encodes rows of 16-bit numbers with horizontal differencing, in the byte order of a writer.
-fn differences(writer: Writer, rows: &[u16], width: usize, samples: usize) -> Vec<u8> {
+fn differences(writer: TiffWriter, rows: &[u16], width: usize, samples: usize) -> Vec<u8> {
     let mut out = Vec::new();
     for row in rows.chunks(width * samples) {
         let at = |at: usize| row[at].wrapping_sub(if at < samples { 0 } else { row[at - samples] });
@@ -86,7 +86,7 @@ fn differences(writer: Writer, rows: &[u16], width: usize, samples: usize) -> Ve
 }
 
 /// Encodes rows of floating-point numbers with the floating-point predictor.
-fn by_weight(rows: &[f32], width: usize) -> Vec<u8> {
+fn float_differences(rows: &[f32], width: usize) -> Vec<u8> {
     let mut out = Vec::new();
     for row in rows.chunks(width) {
         let bytes: Vec<u8> =
@@ -118,7 +118,7 @@ fn all_compressions_with_strips_and_tiles_and_predictors() {
                     } else {
                         pixels!(writer, values)
                     };
-                    packed(compression, &bytes)
+                    compress(compression, &bytes)
                 };
                 let leaf = || {
                     let leaf = writer.leaf([5, 4], 16, &[]);
@@ -137,7 +137,7 @@ fn all_compressions_with_strips_and_tiles_and_predictors() {
             }
         }
         let floats: Vec<f32> = (0..6).map(|at| at as f32 * -0.37).collect();
-        let leaf = writer.leaf([3, 2], 32, &packed(8, &by_weight(&floats, 3)));
+        let leaf = writer.leaf([3, 2], 32, &compress(8, &float_differences(&floats, 3)));
         let leaf = leaf.with(tag::SAMPLE_FORMAT, SHORT, &[3]).with(tag::COMPRESSION, SHORT, &[8]).with(
             tag::PREDICTOR,
             SHORT,
@@ -148,7 +148,7 @@ fn all_compressions_with_strips_and_tiles_and_predictors() {
 }
 
 /// Page of two RGB pixels.
-fn colors(photometric: u64, samples: u64) -> Leaf {
+fn colors(photometric: u64, samples: u64) -> TiffLeaf {
     LITTLE
         .leaf([2, 1], 8, &[255, 0, 0, 10, 20, 30])
         .with(tag::BITS, SHORT, &[8; 3])
@@ -165,16 +165,16 @@ fn colours_are_luminance_or_a_component() {
         let volume = load_bytes(&file).unwrap();
         assert_eq!(*volume.samples(), Samples::U8(vec![54, 19]));
         assert!(volume.remarks().iter().any(|remark| remark.contains("luminance")));
-        let choice = Choice { component: Some(2), ..Choice::default() };
+        let choice = VolumeChoice { component: Some(2), ..VolumeChoice::default() };
         let volume = load_chosen(&file, choice).unwrap();
         assert_eq!((volume.samples(), volume.remarks().len()), (&Samples::U8(vec![0, 30]), 0));
-        let choice = Choice { component: Some(3), ..Choice::default() };
+        let choice = VolumeChoice { component: Some(3), ..VolumeChoice::default() };
         assert_refused(load_chosen(&file, choice), LoadErrorKind::BadInput, &["component 3", "its 3"]);
     }
     // Several samples without a colour space are channels.
     let file = LITTLE.file(&[colors(1, 3)]);
     assert_refused(load_bytes(&file), LoadErrorKind::BadInput, &["3 channels", "--channel"]);
-    let choice = Choice { channel: Some(1), ..Choice::default() };
+    let choice = VolumeChoice { channel: Some(1), ..VolumeChoice::default() };
     assert_eq!(*load_chosen(&file, choice).unwrap().samples(), Samples::U8(vec![0, 20]));
     // Grey with opacity.
     let leaf = LITTLE.leaf([2, 1], 8, &[7, 255, 9, 0]).with(tag::SAMPLES, SHORT, &[2]);
@@ -221,10 +221,10 @@ fn labels_have_the_colours_of_their_table() {
     };
     let labels = read(|x, y| [0, 90, 20, 60, 120, 30, 0, 150, 10][x / 22 + 3 * (y / 22)]);
     assert!(labels.remarks()[0].contains("table of colours"));
-    let found = &labels.hints().labels;
+    let found = &labels.metadata().labels;
     assert_eq!(found.get(90).and_then(|label| label.color), Some([90.0 / 255.0, 0.0, 0.0]));
     assert_eq!(found.get(91), None, "no voxel has it");
     // An image that is not a label map keeps its numbers only.
     let smooth = read(|x, y| (x * 2 + y) as u8);
-    assert!(smooth.hints().labels.is_empty() && smooth.remarks()[0].contains("table of colours"));
+    assert!(smooth.metadata().labels.is_empty() && smooth.remarks()[0].contains("table of colours"));
 }

@@ -13,7 +13,7 @@ const LONG8: u16 = 16;
 
 /// Directory entry: type, count, and the bytes of its values.
 #[derive(Clone)]
-struct Field {
+struct TiffField {
     kind: u16,
     count: u64,
     bytes: Vec<u8>,
@@ -21,8 +21,8 @@ struct Field {
 
 /// Page to write: its directory entries and its data.
 #[derive(Clone)]
-pub(super) struct Leaf {
-    fields: Vec<(u16, Field)>,
+pub(super) struct TiffLeaf {
+    fields: Vec<(u16, TiffField)>,
     parts: Vec<Vec<u8>>,
     is_tiled: bool,
     endian: Endian,
@@ -31,17 +31,17 @@ pub(super) struct Leaf {
 
 /// Byte order and flavour (classic or `BigTIFF`) of a file to write.
 #[derive(Clone, Copy)]
-pub(super) struct Writer {
+pub(super) struct TiffWriter {
     pub(super) endian: Endian,
     pub(super) is_big: bool,
 }
 
-pub(super) const LITTLE: Writer = Writer { endian: Endian::Little, is_big: false };
+pub(super) const LITTLE: TiffWriter = TiffWriter { endian: Endian::Little, is_big: false };
 
-impl Writer {
+impl TiffWriter {
     /// Creates a page of one strip.
-    pub(super) fn leaf(self, [width, height]: [u64; 2], bits: u64, pixels: &[u8]) -> Leaf {
-        let leaf = Leaf {
+    pub(super) fn leaf(self, [width, height]: [u64; 2], bits: u64, pixels: &[u8]) -> TiffLeaf {
+        let leaf = TiffLeaf {
             fields: Vec::new(),
             parts: vec![pixels.to_vec()],
             is_tiled: false,
@@ -62,7 +62,7 @@ impl Writer {
     }
 
     /// Writes a file of these pages.
-    pub(super) fn file(self, leaves: &[Leaf]) -> Vec<u8> {
+    pub(super) fn file(self, leaves: &[TiffLeaf]) -> Vec<u8> {
         let place = if self.is_big { 8 } else { 4 };
         let mut file = match self.endian {
             Endian::Little => b"II".to_vec(),
@@ -120,12 +120,12 @@ impl Writer {
     }
 }
 
-impl Leaf {
-    fn writer(&self) -> Writer {
-        Writer { endian: self.endian, is_big: self.is_big }
+impl TiffLeaf {
+    fn writer(&self) -> TiffWriter {
+        TiffWriter { endian: self.endian, is_big: self.is_big }
     }
 
-    fn put(mut self, tag: u16, field: Field) -> Self {
+    fn put(mut self, tag: u16, field: TiffField) -> Self {
         self.fields.retain(|(found, _)| *found != tag);
         self.fields.push((tag, field));
         self
@@ -141,30 +141,30 @@ impl Leaf {
         };
         let writer = self.writer();
         let bytes = values.iter().flat_map(|&value| writer.number(value, size)).collect();
-        self.put(tag, Field { kind, count: values.len() as u64, bytes })
+        self.put(tag, TiffField { kind, count: values.len() as u64, bytes })
     }
 
     pub(super) fn with_rational(self, tag: u16, over: u64, under: u64) -> Self {
         let writer = self.writer();
         let bytes = [writer.number(over, 4), writer.number(under, 4)].concat();
-        self.put(tag, Field { kind: RATIONAL, count: 1, bytes })
+        self.put(tag, TiffField { kind: RATIONAL, count: 1, bytes })
     }
 
     pub(super) fn with_text(self, tag: u16, text: &str) -> Self {
         let bytes = [text.as_bytes(), &[0]].concat();
-        self.put(tag, Field { kind: ASCII, count: bytes.len() as u64, bytes })
+        self.put(tag, TiffField { kind: ASCII, count: bytes.len() as u64, bytes })
     }
 
     /// Inserts another text of a tag before the one that the page has.
     pub(super) fn with_second_text(mut self, tag: u16, text: &str) -> Self {
         let bytes = [text.as_bytes(), &[0]].concat();
-        let field = Field { kind: ASCII, count: bytes.len() as u64, bytes };
+        let field = TiffField { kind: ASCII, count: bytes.len() as u64, bytes };
         self.fields.insert(0, (tag, field));
         self
     }
 
     pub(super) fn with_bytes(self, tag: u16, bytes: &[u8]) -> Self {
-        self.put(tag, Field { kind: BYTE, count: bytes.len() as u64, bytes: bytes.to_vec() })
+        self.put(tag, TiffField { kind: BYTE, count: bytes.len() as u64, bytes: bytes.to_vec() })
     }
 
     pub(super) fn with_parts(self, parts: Vec<Vec<u8>>) -> Self {

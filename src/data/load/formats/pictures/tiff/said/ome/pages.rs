@@ -5,22 +5,22 @@ use std::path::PathBuf;
 
 use roxmltree::Node;
 
-use super::super::super::fault::HELP;
-use super::super::super::file::directory::MOST_PAGES;
-use super::super::super::stack::Slice;
-use super::{Sizes, beside_of, children, number};
-use crate::data::attempt::{Attempt, quoted};
+use super::super::super::file::directory::MAX_PAGES;
+use super::super::super::messages::HELP;
+use super::super::super::stack::TiffSlice;
+use super::{OmeSizes, children, number, resolve_set_file};
 use crate::data::load::LoadError;
+use crate::data::load_context::{LoadContext, quoted};
 
 /// Page of every combination of slice, channel and time that has one.
-pub(super) struct Pages<'a> {
+pub(super) struct OmePages<'a> {
     /// File name and page, by the plane's index in `DimensionOrder`.
-    places: HashMap<usize, (&'a str, usize)>,
+    plane_pages: HashMap<usize, (&'a str, usize)>,
     /// Index step per slice, channel and time step.
     strides: [usize; 3],
     sizes: [usize; 3],
     /// Name of the opened file in the XML.
-    own: Option<&'a str>,
+    own_name: Option<&'a str>,
     /// Number of pages of the opened file.
     own_count: usize,
 }
@@ -28,20 +28,20 @@ pub(super) struct Pages<'a> {
 /// Pages of a list of slices.
 pub(super) struct SlicePages {
     /// Page of each slice; `None` for those without a page.
-    pub(super) slices: Vec<Option<Slice>>,
+    pub(super) slices: Vec<Option<TiffSlice>>,
     /// Files that they lie in, apart from the opened one.
-    pub(super) beside: Vec<PathBuf>,
+    pub(super) other_files: Vec<PathBuf>,
     /// Remark on missing files.
-    pub(super) lost_files: Option<String>,
+    pub(super) missing_files_remark: Option<String>,
 }
 
-impl<'a> Pages<'a> {
+impl<'a> OmePages<'a> {
     /// Reads the `TiffData` elements. `own_pages` is the number of pages of the opened file.
-    pub(super) fn of(
-        attempt: Attempt<'_>,
+    pub(super) fn parse(
+        attempt: LoadContext<'_>,
         root: Node<'a, '_>,
         pixels: Node<'a, '_>,
-        sizes: &Sizes,
+        sizes: &OmeSizes,
         own_pages: usize,
     ) -> Result<Self, LoadError> {
         let counts = [sizes.dims[2] as usize, sizes.channels, sizes.frames];
@@ -61,7 +61,7 @@ impl<'a> Pages<'a> {
                 ["FirstZ", "FirstC", "FirstT"].map(|name| number::<usize>(element, name).unwrap_or(0));
             if (0..3).any(|axis| first[axis] >= counts[axis]) {
                 let why = format!("{first:?} is beyond its {counts:?} slices, channels and times");
-                return Err(attempt.bad_input("TiffData", why, HELP));
+                return Err(attempt.bad_input_error("TiffData", why, HELP));
             }
             let page = number::<usize>(element, "IFD");
             let count = number::<usize>(element, "PlaneCount");
@@ -72,9 +72,9 @@ impl<'a> Pages<'a> {
             let count = count.min(all.saturating_sub(start));
             // Counts repetitions of the same pages, too.
             said = said.saturating_add(count);
-            if said > MOST_PAGES {
-                let why = format!("there are more than {MOST_PAGES} pages");
-                return Err(attempt.limit("TiffData", why, "split the file into several"));
+            if said > MAX_PAGES {
+                let why = format!("there are more than {MAX_PAGES} pages");
+                return Err(attempt.limit_error("TiffData", why, "split the file into several"));
             }
             for step in 0..count {
                 pages.insert(start + step, (file, page.unwrap_or(0).saturating_add(step)));
@@ -84,28 +84,32 @@ impl<'a> Pages<'a> {
             pages.extend((0..own_pages.min(all)).map(|page| (page, ("", page))));
         }
         let own = own_name(attempt, root, &elements);
-        Ok(Self { places: pages, strides, sizes: counts, own, own_count: own_pages })
+        Ok(Self { plane_pages: pages, strides, sizes: counts, own_name: own, own_count: own_pages })
     }
 
     /// Finds the pages of some slices, given by slice, channel and time index.
     ///
     /// # Errors
     /// `BadInput` where the name of a file leads out of the folder.
-    pub(super) fn find(&self, attempt: Attempt<'_>, wanted: &[[usize; 3]]) -> Result<SlicePages, LoadError> {
+    pub(super) fn find(
+        &self,
+        attempt: LoadContext<'_>,
+        wanted: &[[usize; 3]],
+    ) -> Result<SlicePages, LoadError> {
         let (mut beside, mut lost) = (Vec::new(), Vec::new());
         let mut known: HashMap<&str, Option<usize>> = HashMap::new();
         let mut slices = Vec::with_capacity(wanted.len());
         for place in wanted {
             let at = (0..3).map(|axis| place[axis] * self.strides[axis]).sum::<usize>();
-            let Some(&(name, page)) = self.places.get(&at) else {
+            let Some(&(name, page)) = self.plane_pages.get(&at) else {
                 slices.push(None);
                 continue;
             };
             let file = match known.get(name) {
-                _ if name.is_empty() || Some(name) == self.own => (page < self.own_count).then_some(0),
+                _ if name.is_empty() || Some(name) == self.own_name => (page < self.own_count).then_some(0),
                 Some(&file) => file,
                 None => {
-                    let file = match beside_of(attempt, name) {
+                    let file = match resolve_set_file(attempt, name) {
                         Ok(path) => {
                             beside.push(path);
                             Some(beside.len())
@@ -120,13 +124,13 @@ impl<'a> Pages<'a> {
                     file
                 }
             };
-            slices.push(file.map(|file| Slice { file, page }));
+            slices.push(file.map(|file| TiffSlice { file, page }));
         }
         let lost_files = lost.first().map(|first| match lost.len() - 1 {
             0 => format!("the file {} is not there", quoted(first)),
             more => format!("the file {} is not there, nor are {more} others", quoted(first)),
         });
-        Ok(SlicePages { slices, beside, lost_files })
+        Ok(SlicePages { slices, other_files: beside, missing_files_remark: lost_files })
     }
 
     /// Number of time steps up to the last that has a page.
@@ -140,25 +144,30 @@ impl<'a> Pages<'a> {
     }
 
     fn count(&self, axis: usize) -> usize {
-        let places = self.places.iter().filter(|(_, place)| self.may_be_there(place));
+        let places = self.plane_pages.iter().filter(|(_, place)| self.may_exist(place));
         let along = |at: &usize| at / self.strides[axis] % self.sizes[axis];
         places.map(|(at, _)| along(at) + 1).max().unwrap_or(self.sizes[axis])
     }
 
     /// True if a page exists, judged without opening other files.
-    fn may_be_there(&self, &(name, page): &(&str, usize)) -> bool {
-        let is_own = name.is_empty() || Some(name) == self.own;
+    fn may_exist(&self, &(name, page): &(&str, usize)) -> bool {
+        let is_own = name.is_empty() || Some(name) == self.own_name;
         !is_own || page < self.own_count
     }
 
     /// Error for a combination of channel and time without any page.
-    pub(super) fn nothing(&self, attempt: Attempt<'_>, channel: usize, frame: usize) -> LoadError {
+    pub(super) fn missing_page_error(
+        &self,
+        attempt: LoadContext<'_>,
+        channel: usize,
+        frame: usize,
+    ) -> LoadError {
         // As many as fit into a line.
-        const MOST_LISTED: usize = 8;
+        const MAX_LISTED: usize = 8;
         let mut there: Vec<[usize; 2]> = self
-            .places
+            .plane_pages
             .iter()
-            .filter(|(_, place)| self.may_be_there(place))
+            .filter(|(_, place)| self.may_exist(place))
             .map(|(at, _)| [1, 2].map(|axis| at / self.strides[axis] % self.sizes[axis]))
             .collect();
         there.sort_unstable();
@@ -167,16 +176,16 @@ impl<'a> Pages<'a> {
             "there is no page for channel {channel} at time {frame}; the file has {} pages",
             self.own_count
         );
-        let words = there.iter().take(MOST_LISTED).map(|[channel, frame]| format!("{channel} at {frame}"));
+        let words = there.iter().take(MAX_LISTED).map(|[channel, frame]| format!("{channel} at {frame}"));
         let words = words.collect::<Vec<_>>().join(", ");
         let help = match there.len() {
             0 => "copy the file again, or export it anew".to_owned(),
-            1..=MOST_LISTED => format!("choose a channel and a time with pages: {words}"),
+            1..=MAX_LISTED => format!("choose a channel and a time with pages: {words}"),
             more => {
-                format!("choose a channel and a time with pages: {words}, and {} more", more - MOST_LISTED)
+                format!("choose a channel and a time with pages: {words}, and {} more", more - MAX_LISTED)
             }
         };
-        attempt.bad_input("TiffData", why, help)
+        attempt.bad_input_error("TiffData", why, help)
     }
 }
 
@@ -190,7 +199,7 @@ fn axis_of(letter: char) -> usize {
 
 /// Name of the opened file in the XML: its own name, or that with the UUID of the file, or the only name, since the
 /// file may have been renamed.
-fn own_name<'a>(attempt: Attempt<'_>, root: Node<'a, '_>, elements: &[Node<'a, '_>]) -> Option<&'a str> {
+fn own_name<'a>(attempt: LoadContext<'_>, root: Node<'a, '_>, elements: &[Node<'a, '_>]) -> Option<&'a str> {
     let marks: Vec<(&str, Option<&str>)> = elements
         .iter()
         .flat_map(|&element| children(element, "UUID"))

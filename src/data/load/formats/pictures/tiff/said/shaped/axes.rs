@@ -1,7 +1,7 @@
 //! Meaning of those axes of an array that precede the axes of a page: slices, channels, time steps, or series.
 
-use super::super::super::file::directory::MOST_PAGES;
-use super::super::super::file::page::Page;
+use super::super::super::file::directory::MAX_PAGES;
+use super::super::super::file::page::TiffPage;
 
 /// Axis of an array, with its size and letter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,7 +35,7 @@ pub(super) struct PageAxes {
 impl PageAxes {
     /// Interprets the shape of an array whose last axes are those of a page. `None` where the page does not match
     /// them, or where the array would have more pages than any file.
-    pub(super) fn new(shape: &[u64], letters: &str, page: &Page) -> Option<Self> {
+    pub(super) fn new(shape: &[u64], letters: &str, page: &TiffPage) -> Option<Self> {
         let letters: Vec<char> = letters.chars().map(|letter| letter.to_ascii_uppercase()).collect();
         let is_named = letters.len() == shape.len();
         let letter = |at: usize| if is_named { letters[at] } else { '?' };
@@ -59,17 +59,17 @@ impl PageAxes {
                 axis.letter == letter || axis.letter == '?' || (axis.letter == 'C' && letter == 'S');
             axis.size == size && is_meant
         });
-        if is_same { Self::of_pages(outer) } else { None }
+        if is_same { Self::from_outer_axes(outer) } else { None }
     }
 
     /// Interprets the axes of pages, slowest first.
-    fn of_pages(outer: &[ArrayAxis]) -> Option<Self> {
+    fn from_outer_axes(outer: &[ArrayAxis]) -> Option<Self> {
         let mut axes = Self { pages: 1, ..Self::default() };
         let mut strides = Vec::new();
         for axis in outer.iter().rev() {
             let size = usize::try_from(axis.size).ok().filter(|&size| size > 0)?;
             strides.push(PageStride { size, pages: axes.pages });
-            axes.pages = axes.pages.checked_mul(size).filter(|&pages| pages <= MOST_PAGES)?;
+            axes.pages = axes.pages.checked_mul(size).filter(|&pages| pages <= MAX_PAGES)?;
         }
         strides.reverse();
         let mut letters: Vec<char> = outer.iter().map(|axis| axis.letter).collect();
@@ -131,13 +131,13 @@ fn slice_axis(letters: &[char]) -> Option<usize> {
 mod tests {
     use super::*;
 
-    fn of(letters: &str) -> String {
+    fn axes_of(letters: &str) -> String {
         let outer: Vec<ArrayAxis> = letters
             .chars()
             .enumerate()
             .map(|(at, letter)| ArrayAxis { size: at as u64 + 2, letter })
             .collect();
-        let axes = PageAxes::of_pages(&outer).unwrap();
+        let axes = PageAxes::from_outer_axes(&outer).unwrap();
         let size = |stride: Option<PageStride>| stride.map_or(0, |stride| stride.size);
         let series: Vec<usize> = axes.series.iter().map(|stride| stride.size).collect();
         format!("z{} c{} t{} s{series:?}", size(axes.slices), size(axes.channels), size(axes.frames))
@@ -165,7 +165,7 @@ mod tests {
             ("EZ", "z3 c2 t0 s[]"),
             ("ECZ", "z4 c3 t0 s[2]"),
         ] {
-            assert_eq!(of(letters), expected, "{letters}");
+            assert_eq!(axes_of(letters), expected, "{letters}");
         }
     }
 

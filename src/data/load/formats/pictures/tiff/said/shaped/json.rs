@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 /// Maximum length of a description, in bytes: programs add metadata of their own to the shape.
-pub(super) const MOST_BYTES: u64 = 1 << 20;
+pub(super) const MAX_BYTES: u64 = 1 << 20;
 
 /// Description of a series of pages.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
