@@ -173,7 +173,10 @@ pub(super) fn read(folder: &Path) -> (Vec<EarlierRun>, Vec<String>) {
             runs.push(run);
         } else {
             notices.push(quarantine::quarantine(&look));
-            remove(&look);
+            // A look that could not be moved stays, so that nothing is lost.
+            if !look.exists() {
+                remove(&look);
+            }
         }
     }
     (runs, notices)

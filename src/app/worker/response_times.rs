@@ -33,7 +33,8 @@ impl<T> Default for PendingRequests<T> {
 impl<T: PartialEq> PendingRequests<T> {
     /// Records a new request.
     pub(crate) fn add(&mut self, request: T, now: Instant) {
-        self.pending.truncate(MAX_PENDING - 1);
+        // The oldest requests are those that no picture will answer.
+        self.pending.drain(..self.pending.len().saturating_sub(MAX_PENDING - 1));
         self.pending.push_back((request, now));
     }
 
@@ -83,6 +84,7 @@ mod tests {
         for request in 0..200 {
             waiting.add(request, at(200));
         }
-        assert!(waiting.pending.len() <= MAX_PENDING);
+        let kept: Vec<_> = waiting.pending.iter().map(|(request, _)| *request).collect();
+        assert_eq!(kept, (200 - MAX_PENDING as i32..200).collect::<Vec<_>>(), "the newest are kept");
     }
 }

@@ -105,7 +105,6 @@ fn read(
         let volumes = component as u128 * grid.frames as u128 + frame as u128;
         u64::try_from(u128::from(header.data_start) + volumes * bytes).unwrap_or(u64::MAX)
     };
-    let is_planar = grid.components > 1;
     // Magnitude of vectors: each component is scaled before its square is added.
     let is_magnitude = is_planar && part == ScalarReduction::Magnitude;
     let (first, last) = match part {

@@ -78,7 +78,7 @@ pub(crate) fn slice_thickness(plane: &ImagePlane) -> Option<SliceSpacing> {
     }
     let [between_rows, _] = plane.spacing?;
     let remark = "the file does not say how thick its slice is: it is taken for as thick as pixels are";
-    Some(SliceSpacing { depth_mm: between_rows, remark: Some(remark.to_owned()) })
+    Some(SliceSpacing { depth_mm: between_rows.abs(), remark: Some(remark.to_owned()) })
 }
 
 /// Returns the spacing of slices without distinct positions: as stated, or else their thickness.
