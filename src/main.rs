@@ -43,7 +43,7 @@ fn set_runtime_dir() {
 }
 
 #[cfg(not(target_os = "linux"))]
-fn name_runtime_folder() {}
+fn set_runtime_dir() {}
 
 /// Check of standard output before Rust's runtime opens /dev/null in place of a closed one (`>&-`), after which
 /// output would be lost without an error.

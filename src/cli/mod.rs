@@ -112,7 +112,7 @@ pub struct ViewerRequest {
 #[cfg(feature = "window")]
 const TERMINATION_ACTIONS: &[fn()] = &[crate::app::save_before_termination];
 #[cfg(not(feature = "window"))]
-const LAST_ACTS: &[fn()] = &[];
+const TERMINATION_ACTIONS: &[fn()] = &[];
 
 /// Runs the command line; `open_window` runs the viewer. Returns the exit code.
 pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> u8 {

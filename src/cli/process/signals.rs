@@ -30,7 +30,7 @@ fn exit_now(code: i32) -> ! {
     clippy::exit,
     reason = "whoever sent the signal waits for the process, and all that matters is on the disk"
 )]
-fn leave(code: i32) -> ! {
+fn exit_now(code: i32) -> ! {
     std::process::exit(code)
 }
 
@@ -63,7 +63,7 @@ fn spawn_listener(last_acts: &'static [fn()]) -> std::io::Result<()> {
 }
 
 #[cfg(not(unix))]
-fn start(last_acts: &'static [fn()]) -> Result<(), ctrlc::Error> {
+fn spawn_listener(last_acts: &'static [fn()]) -> Result<(), ctrlc::Error> {
     // Signal number of Ctrl+C (SIGINT) on other systems.
     ctrlc::set_handler(move || run_last_acts_and_exit(last_acts, 2))
 }

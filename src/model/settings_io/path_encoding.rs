@@ -53,12 +53,12 @@ fn path_from_bytes(bytes: Vec<u8>) -> Option<PathBuf> {
 }
 
 #[cfg(not(unix))]
-fn bytes_of(_: &Path) -> Option<&[u8]> {
+fn path_bytes(_: &Path) -> Option<&[u8]> {
     None
 }
 
 #[cfg(not(unix))]
-fn path_of(bytes: Vec<u8>) -> Option<PathBuf> {
+fn path_from_bytes(bytes: Vec<u8>) -> Option<PathBuf> {
     String::from_utf8(bytes).ok().map(PathBuf::from)
 }
 
