@@ -3,14 +3,14 @@
 //! ```
 //! use chiaroscuro::data::load::{LoadControl, LoadOptions};
 //! use chiaroscuro::data::{Dataset, open};
-//! use chiaroscuro::gpu::{Context, RenderOptions, Renderer, first_look};
+//! use chiaroscuro::gpu::{GpuContext, RenderOptions, Renderer, first_look};
 //!
 //! // A built-in volume of 24³ voxels; the name of a RAW or NRRD file does as well.
 //! let volume = open("builtin:chair:24", &LoadOptions::default(), &LoadControl::new())?;
 //! let dataset = Dataset::new(volume);
-//! let mut renderer = Renderer::new(&Context::headless()?)?;
+//! let mut renderer = Renderer::new(&GpuContext::headless()?)?;
 //! let settings = first_look(&mut renderer, &dataset)?;
-//! let bytes = renderer.render_shown(&dataset, &settings, [64, 48], &RenderOptions::default())?;
+//! let bytes = renderer.render_display(&dataset, &settings, [64, 48], &RenderOptions::default())?;
 //! let middle = &bytes[4 * (24 * 64 + 32)..][..3];
 //! assert!(bytes.len() == 64 * 48 * 4 && middle != &bytes[..3], "the chair stands before the background");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
