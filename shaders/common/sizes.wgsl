@@ -3,7 +3,7 @@
 // Voxels along the edge of a brick (src/data/bricks.rs) and of a cell (src/data/cells.rs).
 const BRICK_EDGE = 8;
 const CELL_EDGE = 2;
-// Bricks or tiles per row of a dispatch over a list (src/gpu/volume/listed_bricks.rs).
+// Bricks or tiles per row of a dispatch over a list (src/gpu/volume/brick_list.rs).
 const LISTED_PER_ROW = 16384;
 // Pixels along the edge of a tile, and in a list entry of a tile the bits where the row begins and that mark its
 // first chunk (src/plan/geometry/march_tiles.rs).

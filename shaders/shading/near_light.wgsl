@@ -12,7 +12,7 @@ override NEAR_STEPS: u32 = 0u;
 // or two, which is where a surface shadows itself. The last step extends half a voxel of the light volume further,
 // where the trilinear fetch contains little of the material that the ray has already passed; no part of the path is
 // omitted. All samples look up light at the same distance, so that light volumes need no larger extent
-// (src/plan/geometry/ahead.rs).
+// (src/plan/geometry/near_field_cells.rs).
 fn near_field_attenuation(light: LightUniform, volume: texture_3d<f32>, surface: Surface, towards: LightDirection) -> Left {
     let forward = index_from_scene_vector(eye.space, towards.direction);
     var way = 0.0;

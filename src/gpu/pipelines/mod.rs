@@ -9,10 +9,6 @@ pub(super) mod shader_files;
 pub(super) mod shader_library;
 #[cfg_attr(
     not(feature = "testing"),
-    expect(
-        unreachable_pub,
-        clippy::struct_field_names,
-        reason = "the tests that compare them with the shaders' reach them; names are those of the shaders"
-    )
+    expect(unreachable_pub, reason = "the tests that compare them with those of the shaders reach them")
 )]
 pub mod uniforms;

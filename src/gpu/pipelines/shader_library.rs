@@ -75,7 +75,7 @@ impl ShaderLibrary {
         Self::preprocessed_source(name, format, target, &|_| f64::INFINITY)
     }
 
-    /// Returns a shader with those conditional parts (`conditions.rs`) whose conditions hold; `value` gives the
+    /// Returns a shader with those conditional parts (`preprocessor.rs`) whose conditions hold; `value` gives the
     /// number of each name.
     ///
     /// # Errors

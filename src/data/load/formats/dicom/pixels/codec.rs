@@ -160,7 +160,9 @@ impl Jpeg2000Size {
         let word = |at: usize| Some(u64::from(u32::from_be_bytes(*stream.get(at..)?.first_chunk()?)));
         let [x, y, x0, y0, tile_x, tile_y, tile_x0, tile_y0] =
             [8, 12, 16, 20, 24, 28, 32, 36].map(|at| word(at).unwrap_or(0));
-        let across = |end: u64, start: u64, size: u64| (size > 0).then_some(end.checked_sub(start)?.div_ceil(size.max(1)));
+        let across = |end: u64, start: u64, size: u64| {
+            (size > 0).then_some(end.checked_sub(start)?.div_ceil(size.max(1)))
+        };
         let count = u16::from_be_bytes(*stream.get(40..)?.first_chunk()?);
         let numbers = stream.get(42..42 + 3 * usize::from(count))?.as_chunks().0.iter();
         let numbers = numbers.map(|&[bits, dx, dy]| {
