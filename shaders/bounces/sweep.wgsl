@@ -13,13 +13,13 @@
 
 // If all light has one colour only its amount is followed, a third of the numbers.
 #if ONE_COLOR
-alias LightUniform = f32;
+alias Radiance = f32;
 
-fn incoming_radiance(rays: SweepRaysUniform) -> LightUniform {
+fn incoming_radiance(rays: SweepRaysUniform) -> Radiance {
     return rays.incoming_radiance.r;
 }
 
-fn emission_of(found: vec4f) -> LightUniform {
+fn emission_of(found: vec4f) -> Radiance {
     return found.r;
 }
 
@@ -27,17 +27,17 @@ fn extinction_in(found: vec4f) -> f32 {
     return found.g;
 }
 
-fn level_texel(light: LightUniform) -> vec4f {
+fn level_texel(light: Radiance) -> vec4f {
     return vec4f(light);
 }
 #else
-alias LightUniform = vec3f;
+alias Radiance = vec3f;
 
-fn incoming_radiance(rays: SweepRaysUniform) -> LightUniform {
+fn incoming_radiance(rays: SweepRaysUniform) -> Radiance {
     return rays.incoming_radiance;
 }
 
-fn emission_of(found: vec4f) -> LightUniform {
+fn emission_of(found: vec4f) -> Radiance {
     return found.rgb;
 }
 
@@ -45,7 +45,7 @@ fn extinction_in(found: vec4f) -> f32 {
     return found.a;
 }
 
-fn level_texel(light: LightUniform) -> vec4f {
+fn level_texel(light: Radiance) -> vec4f {
     return vec4f(light, 0.0);
 }
 #endif
@@ -71,7 +71,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let given = emission_of(found);
         let share = slab_emission_share(tau);
         let mean = 1.0 - tau * share;
-        textureStore(sheets, vec3u(id.xy, rays.layer + u32(n)), level_texel(min(light * mean + given * share, LightUniform(MAX_HALF_FLOAT))));
+        textureStore(sheets, vec3u(id.xy, rays.layer + u32(n)), level_texel(min(light * mean + given * share, Radiance(MAX_HALF_FLOAT))));
         light = light * exp(-tau) + given * mean;
     }
 }

@@ -1,6 +1,6 @@
 // Extinction for near-field rays towards lights: one fetch from the pyramid. PRECLASSIFY: from the pyramid
 // pre-classified for light, which is 0 where no voxel is.
-#import "common/left.wgsl"
+#import "common/transmittance.wgsl"
 #import "density/table.wgsl"
 #import "density/volume.wgsl"
 
@@ -11,12 +11,12 @@
 @group(1) @binding(10) var lighting_pyramid: texture_3d<f32>;
 
 // Extinction relative to the maximum, for each colour of light if shadows are coloured.
-alias Met = Left;
+alias LightingValue = Transmittance;
 #else
-alias Met = f32;
+alias LightingValue = f32;
 #endif
 
-fn lighting_density(p: vec3f, level: f32) -> Met {
+fn lighting_density(p: vec3f, level: f32) -> LightingValue {
 #if PRECLASSIFY
     let texel = textureSampleLevel(lighting_pyramid, clamped, (p + 4.5) * grid.pyramid_scale, level);
 #if COLORED
@@ -38,12 +38,12 @@ fn lighting_presence(p: vec3f, level: f32) -> f32 {
 }
 
 // Extinction for a density or a relative extinction, interpolated in the table.
-fn interpolated_extinction(density: f32) -> Left {
+fn interpolated_extinction(density: f32) -> Transmittance {
     let at = table_entry(density);
-    return mix(entry_extinction(lighting_table.entries[at.low]), entry_extinction(lighting_table.entries[at.low + 1u]), Left(at.fraction));
+    return mix(entry_extinction(lighting_table.entries[at.low]), entry_extinction(lighting_table.entries[at.low + 1u]), Transmittance(at.fraction));
 }
 
-fn lighting_extinction(met: Met) -> Left {
+fn lighting_extinction(met: LightingValue) -> Transmittance {
 #if PRECLASSIFY
 #if COLORED
     return vec3f(interpolated_extinction(met.r).r, interpolated_extinction(met.g).r, interpolated_extinction(met.b).r);
@@ -56,7 +56,7 @@ fn lighting_extinction(met: Met) -> Left {
 }
 
 // Extinction from the nearest table entry, without interpolation.
-fn nearest_lighting_extinction(met: Met) -> Left {
+fn nearest_lighting_extinction(met: LightingValue) -> Transmittance {
 #if PRECLASSIFY
 #if COLORED
     // Tables of relative extinction have no colours.

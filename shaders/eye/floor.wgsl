@@ -61,7 +61,7 @@ override SHADOWED: u32 = 1u;
 // Smallest visible opacity of the floor: an eighth of an 8-bit step.
 const MIN_VISIBLE_OPACITY = 0.0005;
 
-fn ray_extinction(frame: SheetFrameUniform, ray: Ray, k: f32) -> Left {
+fn ray_extinction(frame: SheetFrameUniform, ray: Ray, k: f32) -> Transmittance {
 #if COLORED
 #if PRECLASSIFY
     let met = preclassified_in_slab(frame, ray, k).gba;
@@ -111,7 +111,7 @@ fn floor_irradiance(slot: u32, light: LightUniform, p: vec3f, place: vec3f) -> F
     let hood = cone_attenuation(light, risen.towards.direction) * risen.share;
     let bare = light.color * max(risen.facing, 0.0);
     let s = floor_disc.shading;
-    var left = Left(0.0);
+    var left = Transmittance(0.0);
     if (shadowed) {
         for (var i = 0u; i < light.points; i += 1u) {
             let one = area_light_point(light, i);
@@ -126,11 +126,11 @@ fn floor_irradiance(slot: u32, light: LightUniform, p: vec3f, place: vec3f) -> F
         }
         left /= max(f32(light.points), 1.0);
         if (light.points == 0u) {
-            left = Left(map_transmittance(slot, map_coordinates(place)));
+            left = Transmittance(map_transmittance(slot, map_coordinates(place)));
         }
     }
     let arriving = apply_shadow_cures(s, left) - (1.0 - s.strength) * (1.0 - risen.share);
-    return FloorIrradiance(bare * select(Left(hood), arriving, shadowed), bare * hood);
+    return FloorIrradiance(bare * select(Transmittance(hood), arriving, shadowed), bare * hood);
 }
 
 // Moments of an unoccluded sky over a hemisphere.

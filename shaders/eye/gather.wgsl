@@ -25,7 +25,7 @@ override SHEET_GRADIENTS: bool = false;
 // several of which are shaded together (preintegrated_slabs.wgsl).
 
 // Extinction of slab k for rays to lights.
-fn ray_extinction(frame: SheetFrameUniform, ray: Ray, k: f32) -> Left {
+fn ray_extinction(frame: SheetFrameUniform, ray: Ray, k: f32) -> Transmittance {
 #if PRECLASSIFY
     let depth = depth_of(frame, k);
     let offset = select(0.0, TWO_POINT_OFFSET * frame.slab, QUADRATURE == 2u);
@@ -40,12 +40,12 @@ fn light_distance(cell: vec3f) -> i32 {
     return cell_distances(light_distances, cell).y;
 }
 
-fn attenuation_at(light: LightUniform, volume: texture_3d<f32>, surface: Surface, towards: LightDirection) -> Left {
+fn attenuation_at(light: LightUniform, volume: texture_3d<f32>, surface: Surface, towards: LightDirection) -> Transmittance {
 #if DIRECT
     let p = biased_point(surface, towards);
     let s = eye.shading;
     let cut = eye.shading_cut;
-    var sum = Left(0.0);
+    var sum = Transmittance(0.0);
     for (var i = 0u; i < light.points; i += 1u) {
         let one = area_light_point(light, i);
         let way = to_light(one, surface.position);

@@ -30,8 +30,8 @@ var<private> raycast: RaycastUniform;
 @group(0) @binding(4) var attenuation: texture_storage_3d<TARGET_FORMAT, write>;
 
 // White light or a single colour is followed, so extinction is a scalar.
-fn ray_extinction(frame: SheetFrameUniform, ray: Ray, k: f32) -> Left {
-    return Left(classified_extinction(slab_density(frame, ray, k)));
+fn ray_extinction(frame: SheetFrameUniform, ray: Ray, k: f32) -> Transmittance {
+    return Transmittance(classified_extinction(slab_density(frame, ray, k)));
 }
 
 fn light_distance(cell: vec3f) -> i32 {

@@ -15,7 +15,7 @@
 // Takes gradients from neighbouring sheets.
 override SHEET_GRADIENTS: bool = true;
 
-fn attenuation_at(light: LightUniform, volume: texture_3d<f32>, surface: Surface, towards: LightDirection) -> Left {
+fn attenuation_at(light: LightUniform, volume: texture_3d<f32>, surface: Surface, towards: LightDirection) -> Transmittance {
     return shadowed_light(light, volume, surface, towards);
 }
 

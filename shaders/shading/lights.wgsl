@@ -1,5 +1,5 @@
 // Phong's illumination model with attenuated light (P eq. 2–4).
-#import "common/left.wgsl"
+#import "common/transmittance.wgsl"
 
 const MAX_LIGHTS = 8;
 
@@ -202,8 +202,8 @@ struct ReflectedLight {
 }
 
 // Attenuated light at the sample, after the cures for darkness (P §4).
-fn apply_shadow_cures(shading: ShadingUniform, attenuation: Left) -> Left {
-    let light = min(shading.gain * attenuation + shading.ambient_offset, Left(1.0));
+fn apply_shadow_cures(shading: ShadingUniform, attenuation: Transmittance) -> Transmittance {
+    let light = min(shading.gain * attenuation + shading.ambient_offset, Transmittance(1.0));
     return 1.0 - shading.strength * (1.0 - light);
 }
 
@@ -224,7 +224,7 @@ fn relative_phase_function(shading: ShadingUniform, surface: Surface, to_light: 
 // Diffusely reflected fraction of a light of which `share` arrives. The part below the horizon is subtracted;
 // `unmissed` is the part of the light that counts even if it is below. `amid` is the factor for material without a
 // surface.
-fn diffuse_reflectance(light: LightUniform, surface: Surface, risen: HorizonClip, share: Left, unmissed: f32, amid: f32) -> Left {
+fn diffuse_reflectance(light: LightUniform, surface: Surface, risen: HorizonClip, share: Transmittance, unmissed: f32, amid: f32) -> Transmittance {
     var reflected = share * abs(risen.middle);
     if (ONE_SIDED) {
         let outer = 0.5 + 0.5 * abs(surface.side);
@@ -240,7 +240,7 @@ fn diffuse_reflectance(light: LightUniform, surface: Surface, risen: HorizonClip
 //
 // A highlight (N·H)^n is approximately a Gaussian of variance 1/n. Light from a uniform disc of radius s moves H by
 // half its own deflection, which adds s²/16 to the variance, and the highlight dims as it widens.
-fn reflect_light(shading: ShadingUniform, light: LightUniform, surface: Surface, risen: HorizonClip, share: Left, unmissed: f32) -> ReflectedLight {
+fn reflect_light(shading: ShadingUniform, light: LightUniform, surface: Surface, risen: HorizonClip, share: Transmittance, unmissed: f32) -> ReflectedLight {
     let to_light = risen.towards.direction;
     // Highlights are one-sided: on the side to which density falls, or opacity if ONE_SIDED.
     let turned = select(1.0, -1.0, ONE_SIDED && surface.side < 0.0);

@@ -13,10 +13,10 @@ override NEAR_STEPS: u32 = 0u;
 // where the trilinear fetch contains little of the material that the ray has already passed; no part of the path is
 // omitted. All samples look up light at the same distance, so that light volumes need no larger extent
 // (src/plan/geometry/near_field_cells.rs).
-fn near_field_attenuation(light: LightUniform, volume: texture_3d<f32>, surface: Surface, towards: LightDirection) -> Left {
+fn near_field_attenuation(light: LightUniform, volume: texture_3d<f32>, surface: Surface, towards: LightDirection) -> Transmittance {
     let forward = index_from_scene_vector(eye.space, towards.direction);
     var way = 0.0;
-    var depth = Left(0.0);
+    var depth = Transmittance(0.0);
     var step = 0u;
     loop {
         // Excess steps have length 0: drivers unroll a loop with a known end.
@@ -38,7 +38,7 @@ fn near_field_attenuation(light: LightUniform, volume: texture_3d<f32>, surface:
 }
 
 // Attenuation of a light that has a volume.
-fn shadowed_light(light: LightUniform, volume: texture_3d<f32>, surface: Surface, towards: LightDirection) -> Left {
+fn shadowed_light(light: LightUniform, volume: texture_3d<f32>, surface: Surface, towards: LightDirection) -> Transmittance {
 #if NEAR_STEPS
     return near_field_attenuation(light, volume, surface, towards);
 #else

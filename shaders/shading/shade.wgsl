@@ -73,7 +73,7 @@ fn light_above_surface(light: LightUniform, surface: Surface) -> HorizonClip {
 }
 
 // Attenuation of a light at an index-space point, from its volume.
-fn lookup_attenuation(light: LightUniform, volume: texture_3d<f32>, p: vec3f) -> Left {
+fn lookup_attenuation(light: LightUniform, volume: texture_3d<f32>, p: vec3f) -> Transmittance {
     return stored_transmittance(textureSampleLevel(volume, clamped, (p + 0.5) * light.lookup, 0.0));
 }
 
@@ -225,7 +225,7 @@ fn shade(found: VolumeSample, material: vec3f) -> vec3f {
         let light = bound_eye.lights[i];
         let risen = light_above_surface(light, surface);
         let share = cone_attenuation(light, risen.towards.direction);
-        lit = add_light(lit, reflect_light(s, light, surface, risen, Left(share), share));
+        lit = add_light(lit, reflect_light(s, light, surface, risen, Transmittance(share), share));
     }
     let around = sky_light(surface) + scattered_light(surface);
     return material * (s.emission + s.ambient + around + s.diffuse * lit.diffuse) + s.specular * lit.specular;

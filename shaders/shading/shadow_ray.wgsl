@@ -1,6 +1,6 @@
 // Ray from a point of the volume towards a light (P eq. 7 and 8). The importing shader provides extinction and cell
 // distances, as ray_extinction(frame, ray, k) and light_distance(cell).
-#import "common/left.wgsl"
+#import "common/transmittance.wgsl"
 #import "density/cells.wgsl"
 #import "density/cut.wgsl"
 
@@ -18,7 +18,7 @@ fn shadow_ray(
     scale: f32,
     dark: f32,
     cut: CutUniform,
-) -> Left {
+) -> Transmittance {
     // The ray as a stack of sheets: its sample points are the middles of the slabs.
     var frame: SheetFrameUniform;
     frame.first_depth = select(0.0, 0.5 * ray_step, DEPOSIT_FRONT);
@@ -31,7 +31,7 @@ fn shadow_ray(
     let inside = slabs_within(frame, span, slabs_inside(frame, ray));
     let walk = cell_ray(frame, ray);
     var k = inside.x;
-    var depth = Left(0.0);
+    var depth = Transmittance(0.0);
     loop {
         // A loop of its own for empty-space skipping, as in the eye pass.
         loop {

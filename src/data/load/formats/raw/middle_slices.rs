@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::bytes::RawBytes;
 use super::layout::RawLayout;
-use super::plausible::for_each_value;
+use super::layout_detection::for_each_value;
 use crate::data::ValueRange;
 
 /// Maximum number of voxels along the edge of a slice: more than the preview shows.

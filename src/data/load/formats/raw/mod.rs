@@ -3,10 +3,10 @@
 
 mod bytes;
 mod layout;
+mod layout_detection;
 mod middle_slices;
 mod name;
 mod name_hints;
-mod plausible;
 mod sidecar;
 mod storage;
 
@@ -21,9 +21,9 @@ use crate::data::load_context::{LoadContext, is_usable_spacing, quoted, spacing_
 use crate::data::{Volume, VoxelType, sanitised};
 pub use bytes::RawBytes;
 pub use layout::{RawGuess, RawLayout};
+pub use layout_detection::{LayoutEvidence, LayoutProposal, propose_layouts};
 pub use middle_slices::{MiddleSlices, PreviewSlice, read_middle_slices};
 pub use name_hints::RawNameHints;
-pub use plausible::{LayoutEvidence, LayoutProposal, propose_layouts};
 pub(super) use sidecar::{DAT, INI, IVF};
 use storage::RawStorage;
 

@@ -7,7 +7,7 @@
 mod file;
 mod gaps;
 mod messages;
-mod said;
+mod metadata;
 mod single;
 mod stack;
 #[cfg(test)]
@@ -21,8 +21,8 @@ use crate::data::load::{LoadControl, LoadError, LoadOptions};
 use crate::data::load_context::LoadContext;
 use file::TiffFile;
 use file::page::tag;
-use said::palette::TiffPalette;
-use said::{imagej, lsm, ome, shaped};
+use metadata::palette::TiffPalette;
+use metadata::{imagej, lsm, ome, shaped};
 use stack::TiffStack;
 
 pub(crate) use single::SingleSlice;

@@ -2,7 +2,7 @@
 
 use super::file::TiffFile;
 use super::file::page::{TiffPage, tag};
-use super::said::ome;
+use super::metadata::ome;
 use super::stack::{check_page_bytes, page_encoding};
 use super::undescribed::usable_pages;
 use crate::data::load::reading::input::InputFile;

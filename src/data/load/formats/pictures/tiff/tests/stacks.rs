@@ -3,7 +3,7 @@
 use super::writer::{LITTLE, LONG, SHORT, TiffLeaf};
 use super::{assert_refused, load_bytes, load_chosen};
 use crate::data::load::formats::pictures::tiff::file::page::tag;
-use crate::data::load::formats::pictures::tiff::said::imagej_names::tests::entries;
+use crate::data::load::formats::pictures::tiff::metadata::imagej_names::tests::entries;
 use crate::data::load::{Endian, LoadErrorKind, VolumeChoice};
 use crate::data::{Modality, Samples, Volume};
 

@@ -1,12 +1,12 @@
 // Transmittance, 0 … 1, and extinction of light: a scalar, or red, green and blue where shadows are coloured. Tables
 // of coloured extinction hold the share of the extinction for each colour of light in place of the material's colour.
 #if COLORED
-alias Left = vec3f;
+alias Transmittance = vec3f;
 #else
-alias Left = f32;
+alias Transmittance = f32;
 #endif
 
-fn stored_transmittance(texel: vec4f) -> Left {
+fn stored_transmittance(texel: vec4f) -> Transmittance {
 #if COLORED
     return texel.rgb;
 #else
@@ -15,7 +15,7 @@ fn stored_transmittance(texel: vec4f) -> Left {
 }
 
 // Extinction of light for an entry of its table.
-fn entry_extinction(entry: vec4f) -> Left {
+fn entry_extinction(entry: vec4f) -> Transmittance {
 #if COLORED
     return entry.rgb * entry.a;
 #else
@@ -23,7 +23,7 @@ fn entry_extinction(entry: vec4f) -> Left {
 #endif
 }
 
-fn min_component(values: Left) -> f32 {
+fn min_component(values: Transmittance) -> f32 {
 #if COLORED
     return min(values.r, min(values.g, values.b));
 #else
