@@ -150,7 +150,7 @@ impl VoxelEncoding {
     }
 
     /// Reads the selected voxels of a grid and converts them to values; bytes after the grid are not touched. Skipped
-    /// voxels are seeked over where the reader can seek.
+    /// voxels are skipped by seeking where the reader can seek.
     pub(crate) fn read_values<R: Read>(
         &self,
         reader: &mut R,
