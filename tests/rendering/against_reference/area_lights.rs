@@ -110,7 +110,7 @@ fn mistakes_in_them_are_noticed() {
     for (from, to) in [
         ("vec4f(sum * average.share)", "vec4f(sum * average.share * 0.97)"),
         ("!IS_FIRST", "false"),
-        ("ADDED > 2u", "ADDED > 4u"),
+        ("BATCH_SIZE > 2u", "BATCH_SIZE > 4u"),
         ("textureLoad(point_0, voxel, 0).r", "textureLoad(point_1, voxel, 0).r"),
     ] {
         assert_in_shader(volume, from);

@@ -226,7 +226,7 @@ fn mistakes_are_detected() {
         (&settings, "light/colors.wgsl", "textureLoad(green, voxel, 0)", "textureLoad(blue, voxel, 0)"),
         (&settings, "eye/gather.wgsl", "return entry.rgb * entry.a;", "return vec3f(entry.a);"),
         (&settings, "eye/gather.wgsl", "return texel.rgb;", "return texel.rrr;"),
-        (&classified, "light/march.wgsl", "[GATHERED]", "[GATHERED - 1u]"),
+        (&classified, "light/march.wgsl", "[EXTINCTION_CHANNEL]", "[EXTINCTION_CHANNEL - 1u]"),
         (&classified, "eye/gather.wgsl", "return texel.gba;", "return texel.rrr;"),
         (&on_floor, "eye/floor.wgsl", "classified_extinction(met.g)", "classified_extinction(met.b)"),
     ] {
