@@ -1,5 +1,5 @@
-// Ray from a point of the volume towards a light (P eq. 7 and 8). The importing shader provides extinction and cell
-// distances, as ray_extinction(frame, ray, k) and light_distance(cell).
+// Shadow ray: ray marching from a point of the volume towards a light (P eq. 7 and 8). The importing shader provides
+// extinction and cell distances, as ray_extinction(frame, ray, k) and light_distance(cell).
 #import "common/transmittance.wgsl"
 #import "density/cells.wgsl"
 #import "density/cut.wgsl"

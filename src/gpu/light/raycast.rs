@@ -1,4 +1,4 @@
-//! Ray casting of a light volume: a ray from every voxel to the light.
+//! Ray casting of a light volume: ray marching from every voxel to the light.
 
 use super::light_uniform::light_uniform;
 use super::light_volume::LightVolume;
